@@ -25,11 +25,10 @@ _AXES = {
 
 @dataclass(frozen=True)
 class SkeletonMap:
-    """How one data set's joints follow the canonical ones.
+    """How one data set's joints follow the canonical ones; lengths scale by the legs.
 
     Attributes:
         name: Name of the data set or edition.
-        metres_per_unit: Length of the file's unit, m.
         joints: For each canonical joint the file's joint whose world rotation it takes, or two
             between which it lies halfway; canonical joints not named stay at zero rotation.
         t_pose: World rotation of the file's joints in the T-pose (wxyz, y up); identity if absent.
@@ -40,7 +39,6 @@ class SkeletonMap:
     """
 
     name: str
-    metres_per_unit: float
     joints: Mapping[str, tuple[str, ...]]
     t_pose: Mapping[str, Array] = field(default_factory=dict)
     follow_bones: tuple[str, ...] = ()
@@ -71,7 +69,7 @@ class SkeletonMap:
     @classmethod
     def _from_dict(cls, data: dict[str, Any]) -> SkeletonMap:
         known = {
-            *("name", "metres_per_unit", "joints", "t_pose", "t_pose_pitch"),
+            *("name", "joints", "t_pose", "t_pose_pitch"),
             *("follow_bones", "find_floor", "skip_frames"),
         }
         if unknown := set(data) - known:
@@ -96,7 +94,6 @@ class SkeletonMap:
         }
         return cls(
             name=data["name"],
-            metres_per_unit=float(data["metres_per_unit"]),
             joints=joints,
             t_pose=t_pose,
             follow_bones=tuple(data.get("follow_bones", ())),
