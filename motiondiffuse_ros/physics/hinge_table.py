@@ -59,11 +59,11 @@ _LEFT_AND_MIDDLE = {
     "spine2": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 600, 0.02),
     "spine3": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 600, 0.02),
     "neck": JointHinges("yxz", (-40, 40), (-55, 60), (-45, 45), 15, 80, 100),
-    "head": JointHinges("xzy", (-65, 65), (-90, 65), (-55, 55), 20, 60, 80),
+    "head": JointHinges("xzy", (-65, 90), (-90, 65), (-55, 55), 20, 60, 80),
     "collar": JointHinges("zyx", (-25, 30), (-15, 15), (-25, 40), 10, 150, 300),
     # zero is the A-pose: from there the middle axis has the most room (see docs/physics.md)
     "shoulder": JointHinges("yxz", (-75, 85), (-150, 110), (-140, 100), 25, 150, 200, tilt=-45.0),
-    "elbow": JointHinges("zxy", (-50, 45), (-85, 80), (-170, 25), 25, 100, 150),
+    "elbow": JointHinges("zxy", (-50, 45), (-85, 80), (-170, 35), 25, 100, 150),
     "wrist": JointHinges("yzx", (-35, 75), (-110, 90), (-40, 45), 30, 40, 30, 0.005),
 }
 

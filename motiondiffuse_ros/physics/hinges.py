@@ -24,9 +24,16 @@ def hinge_angles(rotations: Array, order: str) -> Array:
     i, j, k = (AXES.index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     m = rot.to_matrix(rotations)
-    first = np.arctan2(-sign * m[..., j, k], m[..., k, k])
-    middle = np.arcsin(np.clip(sign * m[..., i, k], -1.0, 1.0))
-    last = np.arctan2(-sign * m[..., i, j], m[..., i, i])
+    cosine = np.hypot(m[..., i, i], m[..., i, j])
+    middle = np.arctan2(sign * m[..., i, k], cosine)
+    # with the middle at 90 degrees only one of the two others is free: the last is zero then
+    free = cosine > 1e-7
+    first = np.where(
+        free,
+        np.arctan2(-sign * m[..., j, k], m[..., k, k]),
+        np.arctan2(sign * m[..., k, j], m[..., j, j]),
+    )
+    last = np.where(free, np.arctan2(-sign * m[..., i, j], m[..., i, i]), 0.0)
     return np.stack([first, middle, last], axis=-1)
 
 

@@ -1,0 +1,20 @@
+"""Robots, motion made theirs, and trajectories that their controllers can take as they are."""
+
+from motiondiffuse_ros.robots.registry import available_robots, get_robot
+from motiondiffuse_ros.robots.retargeting import retarget, to_joint_positions
+from motiondiffuse_ros.robots.robot import Robot, RobotDescription
+from motiondiffuse_ros.robots.trajectory import JointTrajectory
+from motiondiffuse_ros.robots.trajectory_builder import build_trajectory
+from motiondiffuse_ros.robots.validation import broken_promises
+
+__all__ = [
+    "JointTrajectory",
+    "Robot",
+    "RobotDescription",
+    "available_robots",
+    "broken_promises",
+    "build_trajectory",
+    "get_robot",
+    "retarget",
+    "to_joint_positions",
+]

@@ -1,0 +1,1 @@
+"""Makes `synthetic` (motions made of sines) importable from every test folder."""
