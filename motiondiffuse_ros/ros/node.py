@@ -1,0 +1,285 @@
+"""The lifecycle node `motiondiffuse`: text, requests and goals in, judged trajectories out."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from pathlib import Path
+
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from std_msgs.msg import String
+
+from motiondiffuse_ros.action import GenerateMotion
+from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
+from motiondiffuse_ros.msg import MotionPlan
+from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
+from motiondiffuse_ros.planner import Planner, Progress
+from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.ros.conversions import request_from_message
+from motiondiffuse_ros.ros.diagnostics import Diagnostics
+from motiondiffuse_ros.ros.parameter_spec import Parameters
+from motiondiffuse_ros.ros.parameters import PLANNER_PARAMETERS, complete, planner_config
+from motiondiffuse_ros.ros.plan_publisher import PlanPublisher
+from motiondiffuse_ros.ros.planning_queue import Job, NotActive, PlanningQueue
+from motiondiffuse_ros.ros.qos import COMMANDS
+from motiondiffuse_ros.ros.spinning import run_node
+
+HEARTBEAT = 0.2
+"""Period of the timer that ends withdrawn goals before they are started [s]."""
+
+THREADS = 8
+"""Of the executor: an active, a waiting and a superseded goal block one each while they wait."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Configured:
+    """What `configure` makes and `cleanup` releases."""
+
+    planner: Planner
+    publisher: PlanPublisher
+    release: Callable[[], None]
+
+
+class MotionDiffuseNode(LifecycleNode):
+    """Plans motions; `configure` loads weights and robot, `activate` takes work.
+
+    Topics (resolved in the node's namespace): in `~/text`, `~/request`; out `~/plan`,
+    `~/joint_trajectory`, `~/root_trajectory`, `~/reference`, `/diagnostics`. Action:
+    `~/generate_motion`. The inputs exist once the node is configured.
+    """
+
+    def __init__(self) -> None:
+        """Declare the parameters; with `autostart`, configure and activate once spinning."""
+        super().__init__("motiondiffuse")
+        self.settings = Parameters(self, PLANNER_PARAMETERS)
+        self._configured: _Configured | None = None
+        self._queue: PlanningQueue[MotionPlan] | None = None
+        self._health = Diagnostics(self)
+        self._health.set("warn", "unconfigured")
+        self._group = MutuallyExclusiveCallbackGroup()
+        self._heartbeat = self.create_timer(HEARTBEAT, self._beat, MutuallyExclusiveCallbackGroup())
+        if self.settings["autostart"]:
+            self._autostart = self.create_timer(0.0, self._start, MutuallyExclusiveCallbackGroup())
+
+    def _start(self) -> None:
+        self._autostart.cancel()
+        if self.trigger_configure() is TransitionCallbackReturn.SUCCESS:
+            self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Load weights and robot; on failure say why and stay unconfigured."""
+        self._health.set("warn", "loading weights and robot")
+        try:
+            planner = Planner(planner_config(self.settings))
+        except MotionDiffuseError as error:
+            return self._refuse_to_configure(str(error))
+        except Exception as error:
+            self.get_logger().error(traceback.format_exc())
+            return self._refuse_to_configure(f"{type(error).__name__}: {error}")
+        self._configured = self._create_interfaces(planner)
+        self.settings.locked = True
+        self._health.set("warn", "configured, not active")
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Take work."""
+        self._queue = PlanningQueue(self._plan)
+        self._health.set("ok", "ready")
+        self.get_logger().info("ready for text and goals")
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """End the work in hand; refuse new work."""
+        self._stop_working("the node was deactivated")
+        self._health.set("warn", "configured, not active")
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Release weights, robot and interfaces."""
+        self._release()
+        self._health.set("warn", "unconfigured")
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """End work and release everything."""
+        self._stop_working("the node was shut down")
+        self._release()
+        self._health.set("warn", "finalized")
+        return TransitionCallbackReturn.SUCCESS
+
+    def destroy_node(self) -> None:
+        """End the planning thread, then the node."""
+        self._stop_working("the node is going down")
+        super().destroy_node()
+
+    def _refuse_to_configure(self, reason: str) -> TransitionCallbackReturn:
+        self.get_logger().error(f"not configured: {reason}")
+        self._health.set("error", f"not configured: {reason}")
+        return TransitionCallbackReturn.FAILURE
+
+    def _create_interfaces(self, planner: Planner) -> _Configured:
+        publisher = PlanPublisher(self, self.settings["frame_id"], self.settings["control_rate"])
+        subscriptions = [
+            self.create_subscription(
+                String, "~/text", self._on_text, COMMANDS, callback_group=self._group
+            ),
+            self.create_subscription(
+                MotionRequestMsg,
+                "~/request",
+                self._on_request,
+                COMMANDS,
+                callback_group=self._group,
+            ),
+        ]
+        server = ActionServer(
+            self,
+            GenerateMotion,
+            "~/generate_motion",
+            self._execute,
+            callback_group=ReentrantCallbackGroup(),
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        )
+
+        def release() -> None:
+            server.destroy()
+            for subscription in subscriptions:
+                self.destroy_subscription(subscription)
+            publisher.destroy()
+
+        return _Configured(planner, publisher, release)
+
+    def _stop_working(self, reason: str) -> None:
+        if self._queue is not None:
+            self._queue.close(NotActive(reason))
+            self._queue = None
+        if self._configured is not None:
+            self._configured.publisher.reference.stop()
+
+    def _release(self) -> None:
+        if self._configured is not None:
+            self._configured.release()
+            self._configured = None
+        self.settings.locked = False
+
+    def _beat(self) -> None:
+        queue = self._queue
+        if queue is not None:
+            queue.sweep()
+
+    def _plan(
+        self,
+        request: MotionRequest,
+        *,
+        progress: Callable[[Progress], None],
+        cancelled: Callable[[], bool],
+    ) -> MotionPlan:
+        """Plan and publish; runs in the planning thread."""
+        assert self._configured is not None, "deactivate ends this thread before cleanup"
+        plan = self._configured.planner.plan(request, progress=progress, cancelled=cancelled)
+        if self.settings["plan_dir"]:
+            plan.save(Path(self.settings["plan_dir"]))
+        message = self._configured.publisher.publish(plan)
+        self.get_logger().info(
+            f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
+            f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)
+        )
+        return message
+
+    def _submit(self, job: Job[MotionPlan]) -> Future[MotionPlan]:
+        """Refuse a bad request, or queue it."""
+        job.request.validate()
+        queue = self._queue
+        if queue is None:
+            raise NotActive("the node is configured but not active; activate it first")
+        queue.submit(job)
+        return job.outcome
+
+    def _on_text(self, message: String) -> None:
+        self._take(
+            "~/text",
+            lambda: MotionRequest.from_text(
+                message.data,
+                seconds=self.settings["default_seconds"],
+                robot=self.settings["robot"],
+            ),
+        )
+
+    def _on_request(self, message: MotionRequestMsg) -> None:
+        self._take("~/request", lambda: request_from_message(message, robot=self.settings["robot"]))
+
+    def _take(self, source: str, read: Callable[[], MotionRequest]) -> None:
+        """Queue what came on a topic; there is nobody to answer, so problems are logged."""
+        try:
+            outcome = self._submit(Job(complete(read(), self.settings)))
+        except MotionDiffuseError as error:
+            self._warn(source, error)
+            return
+        outcome.add_done_callback(lambda done: self._log_outcome(source, done))
+
+    def _log_outcome(self, source: str, outcome: Future[MotionPlan]) -> None:
+        error = outcome.exception()
+        if isinstance(error, MotionDiffuseError):
+            self._warn(source, error)
+        elif error is not None:
+            self._report_defect(error)
+        else:
+            self._health.set("ok", "ready")
+
+    def _execute(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
+        """Answer one goal. Blocks a thread of the executor, not the planning."""
+        result = GenerateMotion.Result()
+        try:
+            request = request_from_message(goal.request.request, robot=self.settings["robot"])
+            job = Job[MotionPlan](
+                complete(request, self.settings),
+                progress=lambda progress: goal.publish_feedback(_feedback(progress)),
+                withdrawn=lambda: goal.is_cancel_requested,
+            )
+            result.plan = self._submit(job).result()
+        except Cancelled as error:
+            goal.canceled()
+            result.error_code, result.message = int(error.code), str(error)
+        except MotionDiffuseError as error:
+            self._warn("~/generate_motion", error)
+            goal.abort()
+            result.error_code, result.message = int(error.code), str(error)
+        except Exception as error:
+            self._report_defect(error)
+            goal.abort()
+            result.error_code = int(ErrorCode.INTERNAL)
+            result.message = f"{type(error).__name__}: {error}"
+        else:
+            self._health.set("ok", "ready")
+            goal.succeed()
+            result.message = f"{len(result.plan.trajectory.points)} points"
+        return result
+
+    def _warn(self, source: str, error: MotionDiffuseError) -> None:
+        line = f"{source}: {error} [{error.code.name}]"
+        self.get_logger().warning(line)
+        self._health.set("warn", line)
+
+    def _report_defect(self, error: BaseException) -> None:
+        self.get_logger().error("".join(traceback.format_exception(error)))
+        self._health.set("error", f"{type(error).__name__}: {error}")
+
+
+def _feedback(progress: Progress) -> GenerateMotion.Feedback:
+    return GenerateMotion.Feedback(
+        stage=progress.stage, fraction=float(progress.fraction), preview=progress.preview
+    )
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the node; returns the exit code."""
+    return run_node(MotionDiffuseNode, args, threads=THREADS)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

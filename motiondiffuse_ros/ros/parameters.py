@@ -1,0 +1,80 @@
+"""The parameters of the `motiondiffuse` node, and what it makes of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from motiondiffuse_ros.diffusion.process import SCHEDULERS
+from motiondiffuse_ros.planner import PlannerConfig
+from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.robots import available_robots
+from motiondiffuse_ros.ros.parameter_spec import Parameters, ParameterSpec
+
+_DEFAULT = PlannerConfig()
+
+PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
+    "autostart": ParameterSpec(True, "configure and activate at start", at_configure=True),
+    "weights": ParameterSpec("", "checkpoint folder; empty = the shipped one", at_configure=True),
+    "robot": ParameterSpec(
+        "humanoid",
+        "robot of requests that name none",
+        choices=available_robots(),
+        at_configure=True,
+    ),
+    "device": ParameterSpec(_DEFAULT.device, "torch device: cpu, cuda", at_configure=True),
+    "scheduler": ParameterSpec(
+        _DEFAULT.scheduler, "sampler of the diffusion", choices=SCHEDULERS, at_configure=True
+    ),
+    "control_rate": ParameterSpec(
+        _DEFAULT.control_rate,
+        "of trajectories and ~/reference [Hz]",
+        (1.0, 1000.0),
+        at_configure=True,
+    ),
+    "track": ParameterSpec(
+        _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
+    ),
+    "frame_id": ParameterSpec("map", "frame in which the root moves", at_configure=True),
+    "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
+    "steps": ParameterSpec(_DEFAULT.steps, "denoising steps of requests that set none", (1, 1000)),
+    "guidance_scale": ParameterSpec(
+        _DEFAULT.guidance_scale,
+        "classifier-free guidance [1] of requests that set none",
+        (0.0, 20.0),
+    ),
+    "candidates": ParameterSpec(
+        _DEFAULT.candidates, "motions sampled by requests that set no number", (1, 64)
+    ),
+    "seed": ParameterSpec(-1, "of requests that set none; -1 = drawn", (-1, 2**63 - 1)),
+    "default_seconds": ParameterSpec(
+        4.0, "length of the motion of a sentence on ~/text [s]", (0.5, 60.0)
+    ),
+}
+"""All parameters of the node by name."""
+
+
+def planner_config(parameters: Parameters) -> PlannerConfig:
+    """Return the planner's configuration."""
+    return PlannerConfig(
+        weights=Path(parameters["weights"]) if parameters["weights"] else None,
+        scheduler=parameters["scheduler"],
+        steps=parameters["steps"],
+        guidance_scale=parameters["guidance_scale"],
+        candidates=parameters["candidates"],
+        control_rate=parameters["control_rate"],
+        device=parameters["device"],
+        track=parameters["track"],
+    )
+
+
+def complete(request: MotionRequest, parameters: Parameters) -> MotionRequest:
+    """Return the request with what it leaves open filled in from the parameters."""
+    values = {
+        name: parameters[name]
+        for name in ("steps", "guidance_scale", "candidates")
+        if getattr(request, name) is None
+    }
+    if request.seed is None and parameters["seed"] >= 0:
+        values["seed"] = parameters["seed"]
+    return replace(request, **values)
