@@ -20,7 +20,7 @@ from motiondiffuse_ros.ros.conversions.trajectory import (
 )
 
 try:  # part of every ROS 2 install, but not of the wheels
-    from tf2_msgs.msg import TFMessage
+    from tf2_msgs.msg import TFMessage  # pyright: ignore[reportMissingImports]
 except ImportError:
     TFMessage = None
 
@@ -67,7 +67,7 @@ class StatePublisher:
         odometry.twist.twist.linear = vector_to_message(linear)
         odometry.twist.twist.angular = vector_to_message(data.qvel[3:6])
         self._odometry.publish(odometry)
-        if self._tf is not None:
+        if self._tf is not None and TFMessage is not None:
             transform = TransformStamped(header=header, child_frame_id=self._base)
             transform.transform.translation = vector_to_message(data.qpos[:3])
             transform.transform.rotation = orientation
