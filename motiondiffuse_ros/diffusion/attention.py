@@ -1,0 +1,72 @@
+"""Attention of the Cross-Modality Linear Transformer."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional as F
+
+_MASKED = -1e4  # finite in bf16; softmax makes it zero
+
+
+class AttentionContext:
+    """What attention needs of the attended sequence; for text it does not depend on the step."""
+
+    __slots__ = ("keys", "mask", "values")
+
+    def __init__(self, keys: Tensor | None, values: Tensor, mask: Tensor | None) -> None:
+        self.keys, self.values, self.mask = keys, values, mask
+
+    def expand(self, index: Tensor) -> AttentionContext:
+        """Select rows of the batch."""
+        return AttentionContext(
+            None if self.keys is None else self.keys[index],
+            self.values[index],
+            None if self.mask is None else self.mask[index],
+        )
+
+
+class Attention(nn.Module):
+    """Multi-head attention with its normalisation, in the efficient or the full form.
+
+    The efficient form (Shen et al. 2021, eq. 8 of the paper) takes the softmax of the queries over
+    channels and of the keys over the sequence, so that a [d, d] summary of the sequence is all that
+    the queries meet: cost linear in length.
+    """
+
+    def __init__(self, width: int, context_width: int, heads: int, kind: str) -> None:
+        super().__init__()
+        self.heads, self.kind = heads, kind
+        self.norm = nn.LayerNorm(width)
+        self.context_norm = nn.LayerNorm(context_width)
+        self.query = nn.Linear(width, width)
+        self.key = nn.Linear(context_width, width)
+        self.value = nn.Linear(context_width, width)
+
+    def context(self, x: Tensor, mask: Tensor) -> AttentionContext:
+        """Summarise a sequence x [B, L, C] with mask [B, L] (true on tokens)."""
+        x = self.context_norm(x)
+        keys, values = self._split(self.key(x)), self._split(self.value(x))
+        if self.kind == "full":
+            return AttentionContext(keys, values, mask)
+        keys = keys.masked_fill(~mask[:, None, :, None], _MASKED).softmax(dim=2)
+        return AttentionContext(None, keys.transpose(2, 3) @ values, None)
+
+    def forward(self, x: Tensor, context: AttentionContext) -> Tensor:
+        """Return what x [B, N, width] reads from a context, [B, N, width]."""
+        queries = self._split(self.query(self.norm(x)))
+        if context.keys is None:
+            y = queries.softmax(dim=-1) @ context.values
+        else:
+            assert context.mask is not None
+            mask = context.mask[:, None, None, :]
+            y = F.scaled_dot_product_attention(queries, context.keys, context.values, mask)
+        return y.transpose(1, 2).flatten(2)
+
+    def _split(self, x: Tensor) -> Tensor:
+        return x.unflatten(-1, (self.heads, -1)).transpose(1, 2)
+
+
+def pad_mask(lengths: Tensor, size: int) -> Tensor:
+    """Return [B, size] bool, true on the first `lengths` positions."""
+    return torch.arange(size, device=lengths.device)[None] < lengths[:, None]

@@ -1,0 +1,47 @@
+"""The diffusion process: noise schedules and samplers of diffusers, selected by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from diffusers import DDIMScheduler, DDPMScheduler, DPMSolverMultistepScheduler
+
+from motiondiffuse_ros.diffusion.config import DenoiserConfig
+from motiondiffuse_ros.errors import RequestError
+
+SCHEDULERS = ("ddim", "ddpm", "dpm-solver++")
+
+Scheduler = DDIMScheduler | DDPMScheduler | DPMSolverMultistepScheduler
+
+
+def _schedule(config: DenoiserConfig) -> dict[str, Any]:
+    return {
+        "num_train_timesteps": config.train_steps,
+        "beta_schedule": config.beta_schedule,
+        "beta_start": config.beta_start,
+        "beta_end": config.beta_end,
+        "prediction_type": config.prediction_type,
+    }
+
+
+def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
+    """Return a sampler for a denoiser's noise schedule.
+
+    Args:
+        name: One of `SCHEDULERS`; "ddpm" with all steps is the paper's.
+        config: Of the denoiser.
+
+    Raises:
+        RequestError: If there is no such scheduler.
+    """
+    # features are normalised, not bounded: samples are never clipped
+    common = _schedule(config)
+    if name == "ddim":
+        return DDIMScheduler(**common, clip_sample=False, timestep_spacing="trailing")
+    if name == "ddpm":
+        return DDPMScheduler(**common, clip_sample=False, timestep_spacing="trailing")
+    if name == "dpm-solver++":
+        return DPMSolverMultistepScheduler(
+            **common, algorithm_type="dpmsolver++", timestep_spacing="trailing"
+        )
+    raise RequestError(f"unknown scheduler '{name}'; the schedulers are {', '.join(SCHEDULERS)}")

@@ -1,0 +1,54 @@
+"""Forward kinematics on normalisable features in torch, for losses that see where joints end up."""
+
+from __future__ import annotations
+
+import numpy as np
+import roma
+import torch
+from torch import Tensor
+
+from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.motion.frames import vectors_to_y_up
+from motiondiffuse_ros.motion.skeleton import CANONICAL
+
+
+class PoseStateKinematics:
+    """Joint positions that a pose state's rotations and root height imply."""
+
+    def __init__(self) -> None:
+        groups = PoseState().groups()
+        self._rotations, self._height = groups["rotations"], groups["root_height"]
+        offsets = vectors_to_y_up(CANONICAL.offsets).astype(np.float32)
+        self._offsets = torch.from_numpy(offsets)
+        # joints of one depth are computed together: eight small products instead of 21
+        depth = [0]
+        for parent in CANONICAL.parents[1:]:
+            depth.append(depth[parent] + 1)
+        self._levels = [
+            torch.tensor([j for j, d in enumerate(depth) if d == level])
+            for level in range(1, max(depth) + 1)
+        ]
+        self._parents = torch.tensor(CANONICAL.parents)
+
+    def positions(self, features: Tensor) -> Tensor:
+        """Return positions [N, 21, 3], m, y up, in the heading frame under the root.
+
+        Args:
+            features: Denormalised pose states [N, 269].
+        """
+        columns = features[:, self._rotations].unflatten(-1, (-1, 2, 3)).transpose(-1, -2)
+        local = roma.special_gramschmidt(columns.float())
+        world: list[Tensor | None] = [None] * local.shape[1]
+        place: list[Tensor | None] = [None] * local.shape[1]
+        world[0] = local[:, 0]
+        up = torch.tensor([0.0, 1.0, 0.0])
+        place[0] = features[:, self._height].float() * up
+        for joints in self._levels:
+            parents = self._parents[joints].tolist()
+            turn = torch.stack([world[p] for p in parents], dim=1)
+            here = torch.stack([place[p] for p in parents], dim=1)
+            here = here + (turn * self._offsets[joints][None, :, None, :]).sum(-1)
+            turn = turn @ local[:, joints]
+            for i, j in enumerate(joints.tolist()):
+                world[j], place[j] = turn[:, i], here[:, i]
+        return torch.stack(place[1:], dim=1)

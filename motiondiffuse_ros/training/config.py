@@ -1,0 +1,61 @@
+"""Settings of a training run."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from motiondiffuse_ros.errors import InputError
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """How a denoiser is trained; written beside its checkpoints.
+
+    Attributes:
+        minutes: Training time in all, over every resumed piece; the learning rate follows it.
+        batch_size: Windows a step.
+        learning_rate: Peak of the cosine schedule.
+        warmup_steps: Steps of linear warm-up.
+        weight_decay: Of AdamW, on matrices.
+        gradient_clip: Largest gradient norm.
+        condition_dropout: Share of windows trained with the empty text, for guidance.
+        mirror: Share of windows that are mirrored, with left and right swapped in the text.
+        difference_weight: Weight of the loss on frame-to-frame differences.
+        position_weight: Weight of the loss on forward kinematics.
+        ema_decay: Largest decay of the averaged weights.
+        bf16: Train under bfloat16 autocast.
+        seed: Of initial weights, batches and noise.
+        save_minutes: Time between checkpoints.
+        validate_steps: Steps between validations.
+    """
+
+    minutes: float = 105.0
+    batch_size: int = 64
+    learning_rate: float = 4e-4
+    warmup_steps: int = 200
+    weight_decay: float = 0.01
+    gradient_clip: float = 1.0
+    condition_dropout: float = 0.1
+    mirror: float = 0.5
+    difference_weight: float = 3.0
+    position_weight: float = 0.5
+    ema_decay: float = 0.999
+    bf16: bool = True
+    seed: int = 0
+    save_minutes: float = 5.0
+    validate_steps: int = 400
+
+    def validate(self) -> None:
+        """Raise InputError if a value is out of range."""
+        positive = ("minutes", "batch_size", "learning_rate", "save_minutes", "validate_steps")
+        for name in positive:
+            if not getattr(self, name) > 0:
+                raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
+        for name in ("condition_dropout", "mirror", "ema_decay"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields as JSON types."""
+        return asdict(self)

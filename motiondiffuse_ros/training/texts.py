@@ -1,0 +1,47 @@
+"""Token states of every caption of a corpus, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import torch
+
+from motiondiffuse_ros.corpus.captions import mirror_caption
+from motiondiffuse_ros.corpus.store import Clip
+from motiondiffuse_ros.text import TextEncoder, TokenStates
+
+_BATCH = 256
+
+
+class CaptionStates:
+    """A table from sentence to token states, held in half precision."""
+
+    def __init__(
+        self,
+        texts: Iterable[str],
+        encoder: TextEncoder,
+        on_progress: Callable[[int, int], None] | None = None,
+    ) -> None:
+        # by length, so that batches have little padding
+        ordered = sorted(set(texts), key=lambda text: (len(text), text))
+        self._states: dict[str, torch.Tensor] = {}
+        for start in range(0, len(ordered), _BATCH):
+            batch = ordered[start : start + _BATCH]
+            tokens = encoder.encode(batch)
+            for text, states, mask in zip(batch, tokens.states, tokens.mask, strict=True):
+                self._states[text] = states[mask].half().clone()
+            if on_progress is not None:
+                on_progress(min(start + _BATCH, len(ordered)), len(ordered))
+
+    def batch(self, texts: Sequence[str]) -> TokenStates:
+        """Return the padded states of sentences of the table."""
+        rows = [self._states[text] for text in texts]
+        states = torch.nn.utils.rnn.pad_sequence([r.float() for r in rows], batch_first=True)
+        lengths = torch.tensor([len(r) for r in rows])
+        return TokenStates(states, torch.arange(states.shape[1])[None] < lengths[:, None])
+
+
+def all_captions(clips: Iterable[Clip]) -> set[str]:
+    """Return the captions of clips, their mirror images, and the empty text."""
+    texts = {caption for clip in clips for caption in clip.captions}
+    return texts | {mirror_caption(text) for text in texts} | {""}

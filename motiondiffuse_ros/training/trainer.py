@@ -1,0 +1,271 @@
+"""The training loop."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+from diffusers import DDPMScheduler
+from diffusers.training_utils import EMAModel
+from torch import Tensor
+from torch.utils.tensorboard import SummaryWriter
+
+from motiondiffuse_ros.corpus.store import Corpus
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+from motiondiffuse_ros.diffusion.config import DenoiserConfig
+from motiondiffuse_ros.diffusion.denoiser import Denoiser
+from motiondiffuse_ros.diffusion.process import make_scheduler
+from motiondiffuse_ros.errors import CheckpointError
+from motiondiffuse_ros.text import TextEncoder
+from motiondiffuse_ros.training.config import TrainConfig
+from motiondiffuse_ros.training.losses import Losses, MotionLoss
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions
+from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
+
+STATE_FILE = "training_state.pt"
+CHECKPOINT_FOLDER = "checkpoint"
+_VALIDATION_BATCHES = 8
+_VALIDATION_SEED = 1234
+
+
+@dataclass(frozen=True)
+class TrainProgress:
+    """Where a run stands.
+
+    Attributes:
+        step: Optimiser steps done.
+        minutes: Training time so far, over all pieces.
+        loss: Running mean of the training loss.
+        validation: Last validation loss (unweighted), None before the first.
+        windows_per_second: Speed of late.
+    """
+
+    step: int
+    minutes: float
+    loss: float
+    validation: float | None
+    windows_per_second: float
+
+
+class Trainer:
+    """Trains a denoiser on a corpus; can be stopped at any time and resumed.
+
+    Writes under `out`: checkpoint/ (averaged weights, as shipped), training_state.pt (to resume),
+    config.json, log.jsonl and TensorBoard events.
+    """
+
+    def __init__(
+        self,
+        corpus: Corpus,
+        encoder: TextEncoder,
+        denoiser_config: DenoiserConfig,
+        config: TrainConfig,
+        out: Path,
+        *,
+        resume: bool = False,
+        on_captions: Callable[[int, int], None] | None = None,
+    ) -> None:
+        config.validate()
+        self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
+        torch.manual_seed(config.seed)
+        self._denoiser = Denoiser(denoiser_config)
+        self._optimizer = torch.optim.AdamW(
+            self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99)
+        )
+        self._ema = EMAModel(
+            self._denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
+        )
+        scheduler = make_scheduler("ddpm", denoiser_config)
+        assert isinstance(scheduler, DDPMScheduler)
+        self._scheduler = scheduler
+        self._loss = MotionLoss(corpus.representation, corpus.statistics)
+        self._step, self._seconds = 0, 0.0
+        out.mkdir(parents=True, exist_ok=True)
+        if resume:
+            self._load_state()
+        elif (out / STATE_FILE).exists():
+            raise CheckpointError(f"{out} holds a run already; add --resume or choose another --out")
+        train, val = corpus.split("train"), corpus.split("val")
+        self._captions = CaptionStates(all_captions((*train, *val)), encoder, on_captions)
+        settings = {
+            "max_frames": denoiser_config.max_frames,
+            "mirror": config.mirror,
+        }
+        self._windows = WindowSampler(
+            corpus, train, seed=config.seed + self._step, **settings
+        ).batches(config.batch_size)
+        held_out = WindowSampler(corpus, val, seed=_VALIDATION_SEED, **settings)
+        batches = held_out.batches(config.batch_size)
+        self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]
+        self._record_settings()
+
+    def run(self, on_progress: Callable[[TrainProgress], None] | None = None) -> None:
+        """Train until `minutes` are used up; saves on the way and at the end, also when stopped."""
+        config = self._config
+        writer = SummaryWriter(str(self._out))
+        validation: float | None = None
+        mean_loss, saved, began = 0.0, self._seconds, time.monotonic()
+        before = self._seconds
+        rate, lap = 0.0, time.monotonic()
+        try:
+            while self._seconds < 60.0 * config.minutes:
+                losses = self._train_step(next(self._windows))
+                self._step += 1
+                total = losses.features.item()
+                mean_loss = total if mean_loss == 0.0 else 0.98 * mean_loss + 0.02 * total
+                now = time.monotonic()
+                speed = config.batch_size / (now - lap)
+                rate, lap = (speed if rate == 0.0 else 0.95 * rate + 0.05 * speed), now
+                self._seconds = before + now - began
+                if self._step % 20 == 0:
+                    self._log(writer, losses, rate)
+                if self._step % config.validate_steps == 0:
+                    validation = self.validate()
+                    writer.add_scalar("validation/plain", validation, self._step)
+                    self._append_log({"validation": validation})
+                    lap = time.monotonic()
+                if self._seconds - saved > 60.0 * config.save_minutes:
+                    self.save()
+                    saved = self._seconds
+                if on_progress is not None:
+                    on_progress(
+                        TrainProgress(
+                            self._step, self._seconds / 60.0, mean_loss, validation, rate
+                        )
+                    )
+        finally:
+            self.save()
+            writer.close()
+
+    @torch.no_grad()
+    def validate(self) -> float:
+        """Return the averaged weights' unweighted loss on fixed held-out windows and noise."""
+        parameters = list(self._denoiser.parameters())
+        self._ema.store(parameters)
+        self._ema.copy_to(parameters)
+        self._denoiser.eval()
+        generator = torch.Generator().manual_seed(_VALIDATION_SEED)
+        total = [self._forward(b, generator, 0.0).plain.item() for b in self._validation]
+        self._denoiser.train()
+        self._ema.restore(parameters)
+        return sum(total) / len(total)
+
+    def save(self) -> None:
+        """Write the averaged weights and the state to resume from."""
+        parameters = list(self._denoiser.parameters())
+        self._ema.store(parameters)
+        self._ema.copy_to(parameters)
+        Checkpoint(
+            self._denoiser, self._corpus.statistics, self._encoder.sha256
+        ).save_pretrained(self._out / CHECKPOINT_FOLDER)
+        self._ema.restore(parameters)
+        state = {
+            "denoiser_config": self._denoiser.config.to_dict(),
+            "denoiser": self._denoiser.state_dict(),
+            "optimizer": self._optimizer.state_dict(),
+            "ema": self._ema.state_dict(),
+            "step": self._step,
+            "seconds": self._seconds,
+        }
+        partial = self._out / f"{STATE_FILE}.partial"
+        torch.save(state, partial)
+        partial.replace(self._out / STATE_FILE)  # a stop while writing leaves the last one whole
+
+    def _train_step(self, batch: WindowBatch) -> Losses:
+        for group in self._optimizer.param_groups:
+            group["lr"] = self._learning_rate()
+        losses = self._forward(batch, None, self._config.condition_dropout)
+        total = (
+            losses.features
+            + self._config.difference_weight * losses.difference
+            + self._config.position_weight * losses.position
+        )
+        self._optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        torch.nn.utils.clip_grad_norm_(self._denoiser.parameters(), self._config.gradient_clip)
+        self._optimizer.step()
+        self._ema.step(self._denoiser.parameters())
+        return losses
+
+    def _forward(
+        self, batch: WindowBatch, generator: torch.Generator | None, dropout: float
+    ) -> Losses:
+        clean = batch.features
+        noise = torch.randn(clean.shape, generator=generator)
+        steps = torch.randint(
+            self._denoiser.config.train_steps, (len(clean),), generator=generator
+        )
+        drop = torch.rand(len(clean), generator=generator) < dropout
+        texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
+        tokens = self._captions.batch(texts)
+        noisy = self._scheduler.add_noise(clean, noise, steps)  # type: ignore[arg-type]
+        with torch.autocast("cpu", torch.bfloat16, enabled=self._config.bf16):
+            conditioning = self._denoiser.condition(tokens.states, tokens.mask)
+            output = self._denoiser(noisy, steps, batch.lengths, conditioning)
+        predicted = self._to_clean(output, noisy, steps)
+        return self._loss(predicted, clean, batch.lengths, self._step)
+
+    def _to_clean(self, output: Tensor, noisy: Tensor, steps: Tensor) -> Tensor:
+        kind = self._denoiser.config.prediction_type
+        if kind == "sample":
+            return output
+        alpha = self._scheduler.alphas_cumprod[steps][:, None, None]
+        if kind == "v_prediction":
+            return alpha.sqrt() * noisy - (1 - alpha).sqrt() * output
+        return (noisy - (1 - alpha).sqrt() * output) / alpha.sqrt()
+
+    def _learning_rate(self) -> float:
+        warmup = min(1.0, (self._step + 1) / max(self._config.warmup_steps, 1))
+        done = min(1.0, self._seconds / (60.0 * self._config.minutes))
+        # ends at 1 % rather than zero: the last minutes of a run still learn
+        return self._config.learning_rate * warmup * (0.505 + 0.495 * math.cos(math.pi * done))
+
+    def _parameter_groups(self) -> list[dict]:
+        matrices = [p for p in self._denoiser.parameters() if p.ndim > 1]
+        rest = [p for p in self._denoiser.parameters() if p.ndim <= 1]
+        return [
+            {"params": matrices, "weight_decay": self._config.weight_decay},
+            {"params": rest, "weight_decay": 0.0},
+        ]
+
+    def _load_state(self) -> None:
+        path = self._out / STATE_FILE
+        try:
+            state = torch.load(path, weights_only=True)
+        except FileNotFoundError as error:
+            raise CheckpointError(f"nothing to resume: {path} does not exist") from error
+        except Exception as error:  # torch.load raises many kinds for a truncated file
+            raise CheckpointError(f"{path}: cannot be resumed from ({error})") from error
+        if state["denoiser_config"] != self._denoiser.config.to_dict():
+            raise CheckpointError(f"{path}: was trained with another denoiser configuration")
+        self._denoiser.load_state_dict(state["denoiser"])
+        self._optimizer.load_state_dict(state["optimizer"])
+        self._ema.load_state_dict(state["ema"])
+        self._step, self._seconds = state["step"], state["seconds"]
+        torch.manual_seed(self._config.seed + self._step)
+
+    def _record_settings(self) -> None:
+        settings = {
+            "training": self._config.to_dict(),
+            "denoiser": self._denoiser.config.to_dict(),
+            "parameters": sum(p.numel() for p in self._denoiser.parameters()),
+            "train_clips": len(self._corpus.split("train")),
+        }
+        (self._out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
+
+    def _log(self, writer: SummaryWriter, losses: Losses, rate: float) -> None:
+        values = {name: value.item() for name, value in vars(losses).items()}
+        for name, value in values.items():
+            writer.add_scalar(f"training/{name}", value, self._step)
+        writer.add_scalar("training/windows_per_second", rate, self._step)
+        self._append_log({**values, "learning_rate": self._learning_rate(), "rate": rate})
+
+    def _append_log(self, values: dict[str, float]) -> None:
+        row = {"step": self._step, "minutes": self._seconds / 60.0, **values}
+        with (self._out / "log.jsonl").open("a", encoding="utf-8") as file:
+            file.write(json.dumps({k: round(v, 6) for k, v in row.items()}) + "\n")
