@@ -9,8 +9,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
 
-from rclpy.action import ActionServer, CancelResponse
-from rclpy.action.server import ServerGoalHandle
+from rclpy.action.server import ActionServer, CancelResponse, ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from std_msgs.msg import String
@@ -238,7 +237,7 @@ class MotionDiffuseNode(LifecycleNode):
             request = request_from_message(goal.request.request, robot=self.settings["robot"])
             job = Job[MotionPlan](
                 complete(request, self.settings),
-                progress=lambda progress: goal.publish_feedback(_feedback(progress)),
+                progress=lambda progress: goal.publish_feedback(_feedback(progress)),  # pyright: ignore[reportArgumentType]
                 withdrawn=lambda: goal.is_cancel_requested,
             )
             result.plan = self._submit(job).result()

@@ -1,4 +1,4 @@
-# MuJoCo's wheels bring no types for their compiled modules; without this pyright sees no MjModel.
+# MuJoCo's names come from extension modules that pyright cannot read.
 from typing import Any
 
 def __getattr__(name: str) -> Any: ...
