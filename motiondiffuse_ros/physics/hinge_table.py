@@ -51,20 +51,20 @@ class JointHinges:
 
 
 _LEFT_AND_MIDDLE = {
-    "hip": JointHinges("yxz", (-45, 65), (-150, 45), (-70, 80), 25, 300, 500, 0.02),
-    "knee": JointHinges("yxz", (-10, 10), (-5, 160), (-25, 25), 25, 300, 500, 0.02),
-    "ankle": JointHinges("zxy", (-35, 35), (-75, 50), (-45, 65), 30, 250, 400, 0.02),
-    "foot": JointHinges("yxz", (-10, 10), (-60, 45), (-10, 10), 20, 80, 60),
-    "spine1": JointHinges("yxz", (-35, 35), (-50, 80), (-45, 45), 15, 300, 600, 0.02),
-    "spine2": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 600, 0.02),
-    "spine3": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 600, 0.02),
-    "neck": JointHinges("yxz", (-40, 40), (-55, 60), (-45, 45), 15, 80, 100),
-    "head": JointHinges("xzy", (-65, 90), (-90, 65), (-55, 55), 20, 60, 80),
-    "collar": JointHinges("zyx", (-25, 30), (-15, 15), (-25, 40), 10, 150, 300),
+    "hip": JointHinges("yxz", (-45, 65), (-150, 45), (-70, 80), 25, 300, 2000, 0.02),
+    "knee": JointHinges("yxz", (-10, 10), (-5, 160), (-25, 25), 25, 300, 2000, 0.02),
+    "ankle": JointHinges("zxy", (-35, 35), (-75, 50), (-45, 65), 30, 250, 1600, 0.02),
+    "foot": JointHinges("yxz", (-10, 10), (-60, 45), (-10, 10), 20, 80, 240),
+    "spine1": JointHinges("yxz", (-35, 35), (-50, 80), (-45, 45), 15, 300, 2400, 0.02),
+    "spine2": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 2400, 0.02),
+    "spine3": JointHinges("yxz", (-20, 20), (-25, 25), (-20, 20), 15, 300, 2400, 0.02),
+    "neck": JointHinges("yxz", (-40, 40), (-55, 60), (-45, 45), 15, 80, 400),
+    "head": JointHinges("xzy", (-65, 90), (-90, 65), (-55, 55), 20, 60, 320),
+    "collar": JointHinges("zyx", (-25, 30), (-15, 15), (-25, 40), 10, 150, 1200),
     # zero is the A-pose: from there the middle axis has the most room (see docs/physics.md)
-    "shoulder": JointHinges("yxz", (-75, 85), (-150, 110), (-140, 100), 25, 150, 200, tilt=-45.0),
-    "elbow": JointHinges("zxy", (-50, 45), (-85, 80), (-170, 35), 25, 100, 150),
-    "wrist": JointHinges("yzx", (-35, 75), (-110, 90), (-40, 45), 30, 40, 30, 0.005),
+    "shoulder": JointHinges("yxz", (-75, 85), (-150, 110), (-140, 100), 25, 150, 800, tilt=-45.0),
+    "elbow": JointHinges("zxy", (-50, 45), (-85, 80), (-170, 35), 25, 100, 600),
+    "wrist": JointHinges("yzx", (-35, 75), (-110, 90), (-40, 45), 30, 40, 120, 0.005),
 }
 
 

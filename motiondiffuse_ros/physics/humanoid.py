@@ -16,7 +16,7 @@ from motiondiffuse_ros.physics.geometry import SOLIDS, Solid
 from motiondiffuse_ros.physics.hinge_table import HingeTable, hinge_table
 from motiondiffuse_ros.physics.hinges import AXES
 
-DAMPING_RATIO = 0.1
+DAMPING_RATIO = 0.06
 """PD velocity gain over position gain [s]."""
 
 TIMESTEP = 0.0025
@@ -83,13 +83,14 @@ def _bodies(scene: bool) -> mujoco.MjSpec:
             body.add_freejoint(name="root")
         else:
             body = spec.body(CANONICAL.names[parent]).add_body(name=name, pos=CANONICAL.offsets[j])
-            _add_hinges(spec, body, table, table.joints.index(j))
+            _add_hinges(body, table, table.joints.index(j))
         for solid in (solid for solid in SOLIDS if solid.joint == name):
             _add_geom(body, solid)
+    _add_actuators(spec, table)
     return spec
 
 
-def _add_hinges(spec: mujoco.MjSpec, body: mujoco.MjsBody, table: HingeTable, joint: int) -> None:
+def _add_hinges(body: mujoco.MjsBody, table: HingeTable, joint: int) -> None:
     tilt = rot.about_axis(0, table.tilts[joint])
     body.quat = tilt
     for n, axis in enumerate(table.orders[joint]):
@@ -103,9 +104,14 @@ def _add_hinges(spec: mujoco.MjSpec, body: mujoco.MjsBody, table: HingeTable, jo
             range=np.degrees([table.lower[k], table.upper[k]]),
             armature=table.armature[k],
         )
+
+
+def _add_actuators(spec: mujoco.MjSpec, table: HingeTable) -> None:
+    """One PD actuator a hinge, in the order of the hinges, so that `ctrl` is `qpos[7:]`."""
+    for k, name in enumerate(table.names):
         actuator = spec.add_actuator(
-            name=table.names[k],
-            target=table.names[k],
+            name=name,
+            target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
             forcerange=[-table.torque[k], table.torque[k]],
         )

@@ -1,0 +1,125 @@
+"""Can a body do it? The motion as the reference of a PD controller under gravity and contact.
+
+Nobody holds the humanoid: its joints follow the reference by torques within their limits, and its
+root goes where the feet take it. A PD controller has no balance of its own, so that even real
+walking falls after a few steps; how long it stays up, and how near, still ranks motions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, field
+from functools import cache
+
+import mujoco
+import numpy as np
+
+from motiondiffuse_ros.errors import Cancelled, PhysicsError
+from motiondiffuse_ros.motion import CANONICAL, Motion
+from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.humanoid import DAMPING_RATIO, TIMESTEP, humanoid_model
+from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
+
+FALL_DISTANCE = 0.5
+"""Fallen once the joints are this far from the reference in the mean [m] (PHC's rule)."""
+
+CONTROL_RATE = 100.0
+"""How often the controller's targets are renewed [Hz]."""
+
+_STEPS = round(1.0 / CONTROL_RATE / TIMESTEP)
+_DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Tracking:
+    """What became of a motion in simulation.
+
+    Attributes:
+        time_to_fall: First time at which the body has fallen, or the motion's duration if it
+            never did, s.
+        fell: Whether it fell.
+        diverged: Whether the simulation broke down then.
+        mpjpe: Mean distance of the joints from the reference before the fall, mm.
+        qpos: The executed states [N, 70] at `CONTROL_RATE`, up to the fall.
+        torques: Joint torques that the controller applied [N, 63], N m.
+    """
+
+    time_to_fall: float
+    fell: bool
+    diverged: bool
+    mpjpe: float
+    qpos: Array = field(repr=False)
+    torques: Array = field(repr=False)
+
+
+def track(
+    motion: Motion,
+    *,
+    cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Tracking:
+    """Simulate a motion without assistance; the same motion always ends the same.
+
+    Args:
+        motion: 0.1 s or more.
+        cancelled: Asked at every control step.
+        progress: Told the share done, 0 to 1, at every control step.
+
+    Raises:
+        PhysicsError: If the motion is too short or not finite.
+        Cancelled: If `cancelled` says so.
+    """
+    if motion.duration < 0.1 or not np.isfinite(motion.root).all():
+        raise PhysicsError("tracking needs a finite motion of 0.1 s or more")
+    reference = motion.resample(CONTROL_RATE)
+    qpos = motion_to_qpos(reference)
+    velocity, _ = state_velocities(qpos, CONTROL_RATE)
+    velocity = np.concatenate([velocity[:1], velocity, velocity[-1:]])
+    # the actuator damps towards zero speed; this shift makes it damp towards the reference's
+    targets = qpos[:, 7:] + DAMPING_RATIO * velocity[:, 6:]
+
+    model = _model_that_stops()
+    data = mujoco.MjData(model)
+    bodies = [model.body(name).id for name in CANONICAL.names]
+    data.qpos, data.qvel = qpos[0], velocity[0]
+    states, torques, distances = [qpos[0]], [np.zeros(model.nu)], [0.0]
+    fell = diverged = False
+    for frame in range(1, reference.frames):
+        if cancelled is not None and cancelled():
+            raise Cancelled("tracking was cancelled")
+        data.ctrl = targets[frame]
+        mujoco.mj_step(model, data, _STEPS)
+        diverged = any(data.warning[kind].number for kind in _DIVERGED)
+        if diverged:
+            break
+        error = np.linalg.norm(data.xpos[bodies] - reference.positions[frame], axis=1).mean()
+        fell = bool(error > FALL_DISTANCE)
+        if fell:
+            break
+        states.append(data.qpos.copy())
+        torques.append(data.actuator_force.copy())
+        distances.append(float(error))
+        if progress is not None:
+            progress(frame / (reference.frames - 1))
+    up = not (fell or diverged)
+    return Tracking(
+        time_to_fall=motion.duration if up else len(states) / CONTROL_RATE,
+        fell=not up,
+        diverged=diverged,
+        mpjpe=1000.0 * float(np.mean(distances)),
+        qpos=np.array(states),
+        torques=np.array(torques),
+    )
+
+
+@cache
+def _model_that_stops() -> mujoco.MjModel:
+    """The humanoid without MuJoCo's silent reset on divergence: it must be seen."""
+    model = copy(humanoid_model())
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    return model
