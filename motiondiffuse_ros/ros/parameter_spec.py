@@ -49,6 +49,16 @@ class ParameterSpec:
             descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=1)]
         return descriptor
 
+    def explain(self) -> str:
+        """Return the description with choices, bounds and default, for a help text."""
+        limits = ""
+        if self.choices:
+            limits = f" ({', '.join(self.choices)})"
+        elif self.bounds is not None:
+            limits = f" ({self.bounds[0]:g} to {self.bounds[1]:g})"
+        default = str(self.default).lower() if isinstance(self.default, bool) else self.default
+        return f"{self.description}{limits}; default {default!r}".replace("'", "")
+
     def refusal(self, value: object) -> str:
         """Return what is wrong with a value beyond its type and bounds; empty = nothing."""
         if self.choices and value not in self.choices:

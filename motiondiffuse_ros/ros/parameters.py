@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
 from motiondiffuse_ros.planner import PlannerConfig
-from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import available_robots
 from motiondiffuse_ros.ros.parameter_spec import Parameters, ParameterSpec
 
@@ -37,18 +36,24 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     ),
     "frame_id": ParameterSpec("map", "frame in which the root moves", at_configure=True),
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
-    "steps": ParameterSpec(_DEFAULT.steps, "denoising steps of requests that set none", (1, 1000)),
+    "steps": ParameterSpec(
+        _DEFAULT.steps, "denoising steps of requests that set none", (1, LIMITS.max_steps)
+    ),
     "guidance_scale": ParameterSpec(
         _DEFAULT.guidance_scale,
         "classifier-free guidance [1] of requests that set none",
-        (0.0, 20.0),
+        (0.0, LIMITS.max_guidance_scale),
     ),
     "candidates": ParameterSpec(
-        _DEFAULT.candidates, "motions sampled by requests that set no number", (1, 64)
+        _DEFAULT.candidates,
+        "motions sampled by requests that set no number",
+        (1, LIMITS.max_candidates),
     ),
     "seed": ParameterSpec(-1, "of requests that set none; -1 = drawn", (-1, 2**63 - 1)),
     "default_seconds": ParameterSpec(
-        4.0, "length of the motion of a sentence on ~/text [s]", (0.5, 60.0)
+        LIMITS.default_seconds,
+        "length of the motion of a sentence on ~/text [s]",
+        (LIMITS.min_seconds, LIMITS.max_seconds),
     ),
 }
 """All parameters of the node by name."""
@@ -70,11 +75,10 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
 
 def complete(request: MotionRequest, parameters: Parameters) -> MotionRequest:
     """Return the request with what it leaves open filled in from the parameters."""
-    values = {
-        name: parameters[name]
-        for name in ("steps", "guidance_scale", "candidates")
-        if getattr(request, name) is None
-    }
-    if request.seed is None and parameters["seed"] >= 0:
-        values["seed"] = parameters["seed"]
-    return replace(request, **values)
+    seed = parameters["seed"]
+    return request.with_defaults(
+        steps=parameters["steps"],
+        guidance_scale=parameters["guidance_scale"],
+        candidates=parameters["candidates"],
+        seed=None if seed < 0 else seed,
+    )

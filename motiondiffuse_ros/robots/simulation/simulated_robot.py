@@ -19,6 +19,12 @@ from motiondiffuse_ros.robots.trajectory import JointTrajectory
 FALLEN = 0.5
 """A root below this part of its height at rest counts as fallen."""
 
+_DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+)
+
 
 @dataclass(frozen=True)
 class SimulationConfig:
@@ -120,7 +126,7 @@ class SimulatedRobot:
         if self._assistance is not None:
             self._assistance.apply(self.data, reference)
         mujoco.mj_step(self.model, self.data)
-        if self.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+        if any(self.data.warning[kind].number for kind in _DIVERGED):
             self._reset()
             raise PhysicsError("the simulation diverged; the robot was put back to rest")
 
