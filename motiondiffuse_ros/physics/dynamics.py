@@ -91,7 +91,7 @@ def inverse_dynamics(motion: Motion) -> Dynamics:
             if push.any():
                 mujoco.mj_applyFT(model, data, push, np.zeros(3), point, body, generalised)
         torques[i] = (data.qfrc_inverse - generalised)[6:]
-    return Dynamics(force, torque, torques, touching[1:-1].any(axis=1))
+    return Dynamics(force, torque, torques, np.any(touching[1:-1], axis=1))
 
 
 def _free_model() -> mujoco.MjModel:
@@ -102,7 +102,7 @@ def _free_model() -> mujoco.MjModel:
 
 
 def _root_wrench(data: mujoco.MjData, centre: Array) -> Array:
-    """Force and torque about the centre of mass, world frame, that `mj_inverse` puts on the root."""
+    """Return the force and the torque about the centre of mass, in the world, on the root."""
     force = data.qfrc_inverse[:3]
     # a free joint's rotational coordinates are in the body's own frame
     torque = rot.rotate(data.qpos[3:7], data.qfrc_inverse[3:6])

@@ -21,7 +21,7 @@ from motiondiffuse_ros.physics.geometry import sole_probes
 GMD_HEIGHT, GMD_SPEED, GMD_WINDOW = 0.05, 0.5, 5
 
 CONTACT_HEIGHT = 0.025
-"""A corner of a sole below this [m] in two frames may carry the body (mocap floors are no flatter)."""
+"""A corner of a sole below this [m] in two frames may carry the body."""
 
 SIDES = ("left", "right")
 

@@ -79,8 +79,8 @@ class HingeTable:
         tilts: Rotation about x from the T-pose to zero hinges [K / 3], rad.
         lower: Lower end of the range [K], rad.
         upper: Upper end [K], rad.
-        speed: Speed limit [K], rad/s.
-        torque: Torque limit [K], N m.
+        velocity_limits: Largest speeds [K], rad/s.
+        torque_limits: Largest torques [K], N m.
         stiffness: PD position gain [K], N m/rad.
         armature: Added inertia [K], kg m^2.
     """
@@ -91,8 +91,8 @@ class HingeTable:
     tilts: Array = field(repr=False)
     lower: Array = field(repr=False)
     upper: Array = field(repr=False)
-    speed: Array = field(repr=False)
-    torque: Array = field(repr=False)
+    velocity_limits: Array = field(repr=False)
+    torque_limits: Array = field(repr=False)
     stiffness: Array = field(repr=False)
     armature: Array = field(repr=False)
 
@@ -140,8 +140,8 @@ def hinge_table() -> HingeTable:
         tilts=np.radians([spec.tilt for spec in specs]),
         lower=ranges[:, 0],
         upper=ranges[:, 1],
-        speed=thrice([spec.speed for spec in specs]),
-        torque=thrice([spec.torque for spec in specs]),
+        velocity_limits=thrice([spec.speed for spec in specs]),
+        torque_limits=thrice([spec.torque for spec in specs]),
         stiffness=thrice([spec.stiffness for spec in specs]),
         armature=thrice([spec.armature for spec in specs]),
     )

@@ -113,7 +113,7 @@ def _add_actuators(spec: mujoco.MjSpec, table: HingeTable) -> None:
             name=name,
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
-            forcerange=[-table.torque[k], table.torque[k]],
+            forcerange=[-table.torque_limits[k], table.torque_limits[k]],
         )
         actuator.set_to_position(
             kp=float(table.stiffness[k]), kv=float(DAMPING_RATIO * table.stiffness[k])

@@ -9,10 +9,10 @@ from motiondiffuse_ros.motion.rotations import Array
 
 
 def joint_jerk(motion: Motion) -> Array:
-    """Return the largest jerk over the joints [T - 3], m/s^3.
+    """Return the jerk of every joint [T - 3, 22], m/s^3.
 
     Third differences of the world joint positions times the cube of the rate; it grows with the
     rate where a motion is noisy, hence the report takes it at 20 fps.
     """
     jerk = np.diff(motion.positions, n=3, axis=0) * motion.fps**3
-    return np.linalg.norm(jerk, axis=-1).max(axis=1)
+    return np.linalg.norm(jerk, axis=-1)

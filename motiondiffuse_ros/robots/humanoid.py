@@ -14,7 +14,7 @@ def describe_humanoid() -> RobotDescription:
     return RobotDescription(
         name="humanoid",
         model=humanoid_model,
-        speed_limits=dict(zip(table.names, table.speed.tolist(), strict=True)),
+        speed_limits=dict(zip(table.names, table.velocity_limits.tolist(), strict=True)),
         rest=dict(zip(table.names, rest_angles().tolist(), strict=True)),
         body_map={name: name for name in CANONICAL.names},
         retargeting="exact",

@@ -1,0 +1,5 @@
+"""The humanoid, what physics says about a motion, and how that is put into a verdict."""
+
+from motiondiffuse_ros.physics.report import Report, SegmentReport, assess
+
+__all__ = ["Report", "SegmentReport", "assess"]

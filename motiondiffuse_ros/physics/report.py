@@ -1,0 +1,222 @@
+"""The physics report: a verdict with reasons, and the figures behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from motiondiffuse_ros.errors import Cancelled
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.physics.criteria import CRITERIA
+from motiondiffuse_ros.physics.hinge_table import hinge_table
+from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE, Limits, Series, measure
+from motiondiffuse_ros.physics.tracking import Tracking, track
+
+PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
+
+METRICS = (
+    *("penetrate_mm", "float_mm", "skate_mm", "phys_err_mm", "skating_ratio"),
+    *("contact_skating_ratio", "joint_limit_violation", "joint_velocity_violation", "peak_jerk"),
+    *("root_residual_force_bw", "root_residual_torque", "torque_violation"),
+    *("time_to_fall_s", "tracking_mpjpe_mm"),
+)
+"""The keys that every report has, null where not computed. docs/physics.md defines each."""
+
+
+class TimedText(Protocol):
+    """A segment of a request."""
+
+    @property
+    def text(self) -> str: ...
+
+    @property
+    def start(self) -> float: ...
+
+    @property
+    def end(self) -> float: ...
+
+    @property
+    def parts(self) -> tuple[str, ...]: ...
+
+
+@dataclass(frozen=True)
+class SegmentReport:
+    """The verdict on the frames of one segment of the request.
+
+    Attributes:
+        text: Of the segment.
+        start: s.
+        end: s.
+        parts: Body parts, none for the whole body.
+        verdict: plausible, marginal or implausible.
+        reasons: What is wrong, how much and when.
+        metrics: The statistics that were judged.
+    """
+
+    text: str
+    start: float
+    end: float
+    parts: tuple[str, ...]
+    verdict: str
+    reasons: tuple[str, ...]
+    metrics: dict[str, float] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Report:
+    """What physics says about a motion.
+
+    Attributes:
+        verdict: plausible, marginal or implausible.
+        reasons: What is wrong, how much and when; empty for a plausible motion.
+        score: 0 to 1, higher is more plausible; continuous, for choosing among candidates.
+        metrics: `METRICS` and more, None where not computed.
+        segments: The same for each segment of the request.
+    """
+
+    verdict: str
+    reasons: tuple[str, ...]
+    score: float
+    metrics: dict[str, float | None] = field(repr=False)
+    segments: tuple[SegmentReport, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what `report.json` holds."""
+        return asdict(self)
+
+
+def assess(
+    motion: Motion,
+    *,
+    segments: Sequence[TimedText] = (),
+    robot: Limits | None = None,
+    track: bool = True,
+    cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Report:
+    """Judge a motion on a floor at z = 0.
+
+    Args:
+        motion: At any rate. One that is not finite or too short is implausible, with the reason.
+        segments: Spans of time to be judged on their own as well.
+        robot: Whose joint limits count, if its joints are the 63 hinges; the humanoid's if None.
+        track: Also simulate it under a PD controller (`tracking.track`); the slow part.
+        cancelled: Asked between the steps of the work.
+        progress: Told the share done, 0 to 1.
+
+    Raises:
+        Cancelled: If `cancelled` says so.
+    """
+    if not (np.isfinite(motion.root).all() and np.isfinite(motion.rotations).all()):
+        return _unjudged("the motion holds values that are not finite")
+    sampled = motion.resample(RATE)
+    if sampled.frames < MIN_FRAMES:
+        return _unjudged(
+            f"the motion lasts {motion.duration:.2f} s; "
+            f"dynamics need {(MIN_FRAMES - 1) / RATE:.2f} s or more"
+        )
+    _check(cancelled)
+    measures = measure(sampled, robot or hinge_table())
+    _check(cancelled)
+    values, verdict, reasons = judge(measures)
+    metrics: dict[str, float | None] = dict.fromkeys(METRICS)
+    metrics |= _plain_metrics(measures) | values
+    if progress is not None:
+        progress(0.2 if track else 1.0)
+    if track:
+        tracking = _track(motion, cancelled, progress)
+        metrics["time_to_fall_s"] = tracking.time_to_fall
+        metrics["tracking_mpjpe_mm"] = tracking.mpjpe
+        if tracking.diverged:
+            verdict = IMPLAUSIBLE
+            reasons = (*reasons, f"its simulation diverged at {tracking.time_to_fall:.2f} s")
+    return Report(
+        verdict=verdict,
+        reasons=reasons,
+        score=_score(values),
+        metrics=metrics,
+        segments=tuple(_segment(segment, measures) for segment in segments),
+    )
+
+
+def judge(
+    measures: Mapping[str, Series], start: float = 0.0
+) -> tuple[dict[str, float], str, tuple[str, ...]]:
+    """Apply all criteria to some frames.
+
+    Args:
+        measures: Series of the same frames.
+        start: Time of the first frame [s], for the reasons.
+
+    Returns:
+        The statistic of each criterion, the verdict, and the reasons.
+    """
+    values = {criterion.name: criterion.value(measures) for criterion in CRITERIA}
+    broken = [c for c in CRITERIA if values[c.name] > c.marginal]
+    implausible = any(values[c.name] > c.implausible for c in broken)
+    verdict = IMPLAUSIBLE if implausible else MARGINAL if broken else PLAUSIBLE
+    # worst first; criteria that share their words say the same thing twice
+    broken.sort(key=lambda c: -values[c.name] / c.implausible)
+    reasons = {c.words: c.reason(measures, start) for c in reversed(broken)}
+    return values, verdict, tuple(reversed(reasons.values()))
+
+
+def _segment(segment: TimedText, measures: Mapping[str, Series]) -> SegmentReport:
+    first, last = round(segment.start * RATE), round(segment.end * RATE) + 1
+    inside = {name: series.cut(first, last) for name, series in measures.items()}
+    values, verdict, reasons = judge(inside, first / RATE)
+    return SegmentReport(
+        text=segment.text,
+        start=segment.start,
+        end=segment.end,
+        parts=tuple(segment.parts),
+        verdict=verdict,
+        reasons=reasons,
+        metrics=values,
+    )
+
+
+def _plain_metrics(measures: Mapping[str, Series]) -> dict[str, float | None]:
+    means = {
+        "penetrate_mm": "penetrate",
+        "float_mm": "float",
+        "skate_mm": "skate",
+        "phys_err_mm": "phys_err",
+    }
+    out: dict[str, float | None] = {
+        key: float(np.mean(measures[name].values)) for key, name in means.items()
+    }
+    skates = measures["skates"].values[:-1]
+    out["skating_ratio"] = float(np.mean(np.nan_to_num(skates)))
+    out["mean_jerk"] = float(np.nanmean(measures["jerk"].values))
+    return out
+
+
+def _score(values: Mapping[str, float]) -> float:
+    """Map the criteria's shares of their implausible thresholds to (0, 1]: 0.5 at the threshold.
+
+    The fourth power lets the worst criterion rule while the others still count.
+    """
+    shares = np.array([values[c.name] / c.implausible for c in CRITERIA])
+    return float(1.0 / (1.0 + np.sqrt(np.sum(shares**4))))
+
+
+def _track(
+    motion: Motion,
+    cancelled: Callable[[], bool] | None,
+    progress: Callable[[float], None] | None,
+) -> Tracking:
+    report = None if progress is None else (lambda share: progress(0.2 + 0.8 * share))
+    return track(motion, cancelled=cancelled, progress=report)
+
+
+def _unjudged(reason: str) -> Report:
+    return Report(IMPLAUSIBLE, (reason,), 0.0, dict.fromkeys(METRICS))
+
+
+def _check(cancelled: Callable[[], bool] | None) -> None:
+    if cancelled is not None and cancelled():
+        raise Cancelled("the physics report was cancelled")
