@@ -151,6 +151,11 @@ class Denoiser(nn.Module):
         self.norm = nn.LayerNorm(width)
         self.head = ConvolutionalHead(config) if config.head_width else LinearHead(config)
 
+    @property
+    def device(self) -> torch.device:
+        """Where the weights are."""
+        return self.positions.device
+
     def condition(self, states: Tensor, mask: Tensor) -> Conditioning:
         """Encode texts once for all steps.
 

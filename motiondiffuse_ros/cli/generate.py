@@ -1,0 +1,119 @@
+"""`motiondiffuse generate`: words or a request file to files a robot can follow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from motiondiffuse_ros.cli.parsing import parse
+from motiondiffuse_ros.errors import RequestError
+from motiondiffuse_ros.request import MotionRequest
+
+
+@dataclass(frozen=True)
+class Generate:
+    """Sample a motion from text, check it, and write it as a joint trajectory.
+
+    Leaves in the output folder: plan.json, report.json, motion.bvh, motion.npz, trajectory.csv,
+    root.csv and motion.gif.
+    """
+
+    text: Annotated[str | None, tyro.conf.Positional] = None
+    """What to do, in plain English; or give --request."""
+    request: Path | None = None
+    """YAML file with timed segments and body parts."""
+    seconds: float | None = None
+    """Length of the motion of a text [s]."""
+    seed: int | None = None
+    """Of all randomness; drawn and recorded if not given."""
+    candidates: int | None = None
+    """Motions to choose the most plausible from."""
+    steps: int | None = None
+    """Denoising steps."""
+    guidance_scale: float | None = None
+    """Weight of the text; 1 is none."""
+    scheduler: str = "ddim"
+    """ddim, ddpm or dpm-solver++."""
+    robot: str | None = None
+    """Robot to retarget to."""
+    weights: Path | None = None
+    """Checkpoint folder; the shipped one if not given."""
+    text_encoder: Path | None = None
+    """Folder of CLIP's files, for weights trained with it."""
+    rate: float = 50.0
+    """Points of the trajectory a second."""
+    track: bool = True
+    """Also simulate the motion under a PD controller."""
+    picture: bool = True
+    """Also draw motion.gif."""
+    out: Path = Path("out")
+    """Folder for the results."""
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; returns the exit code."""
+    options = parse(Generate, arguments, "generate")
+    request = _request(options)
+    request.validate()
+    # torch loads after the request has been found good
+    from motiondiffuse_ros.planner import Plan, Planner, PlannerConfig
+    from motiondiffuse_ros.render import render_skeleton
+    from motiondiffuse_ros.robots import get_robot
+
+    get_robot(request.robot)
+    defaults = PlannerConfig()
+    planner = Planner(
+        PlannerConfig(
+            weights=options.weights,
+            text_encoder=options.text_encoder,
+            scheduler=options.scheduler,
+            steps=request.steps or defaults.steps,
+            control_rate=options.rate,
+            track=options.track,
+        )
+    )
+    console = Console()
+    columns = (TextColumn("{task.description:>12}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("text", total=1.0)
+        plan: Plan = planner.plan(
+            request,
+            progress=lambda p: bar.update(task, description=p.stage, completed=p.fraction),
+        )
+    plan.save(options.out)
+    if options.picture:
+        title = " · ".join(s.text for s in request.segments)
+        render_skeleton([plan.motion], options.out / "motion.gif", titles=[title])
+    report = plan.report
+    console.print(
+        f"{report.verdict} (score {report.score:.2f}), seed {plan.seed}, "
+        f"{plan.trajectory.duration:.1f} s, planned in {plan.timings_s['total']:.1f} s"
+    )
+    for reason in (*report.reasons, *plan.trajectory.notes):
+        console.print(f"  {reason}", highlight=False, markup=False)
+    console.print(f"written to {options.out}")
+    return 0
+
+
+def _request(options: Generate) -> MotionRequest:
+    if (options.text is None) == (options.request is None):
+        raise RequestError("give either a text or --request FILE")
+    if options.request is not None:
+        if options.seconds is not None:
+            raise RequestError("--seconds goes with a text; a request file has its own duration")
+        request = MotionRequest.from_yaml(options.request)
+    else:
+        assert options.text is not None
+        if options.seconds is not None and not math.isfinite(options.seconds):
+            raise RequestError(f"--seconds must be a finite number, got {options.seconds}")
+        request = MotionRequest.from_text(options.text, options.seconds)
+    names = ("seed", "candidates", "steps", "guidance_scale", "robot")
+    given = {name: getattr(options, name) for name in names}
+    return replace(request, **{name: value for name, value in given.items() if value is not None})

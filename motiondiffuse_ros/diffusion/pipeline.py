@@ -1,0 +1,136 @@
+"""Texts in, motions out: encoder, composition, sampler and decoder behind one call."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+from motiondiffuse_ros.diffusion.composition import TimedText, compose
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample
+from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion.features import REPRESENTATIONS
+from motiondiffuse_ros.text import TextEncoder, load_text_encoder
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What a pipeline returns.
+
+    Attributes:
+        motions: One per candidate; starts over the origin, facing +x.
+        text_seconds: Time spent on the text encoder, s.
+        sampling_seconds: Time spent on denoising, s.
+    """
+
+    motions: tuple[Motion, ...]
+    text_seconds: float
+    sampling_seconds: float
+
+
+class MotionPipeline:
+    """A checkpoint with its text encoder, ready to sample."""
+
+    def __init__(self, checkpoint: Checkpoint, encoder: TextEncoder) -> None:
+        """Join a checkpoint and an encoder.
+
+        Raises:
+            TextEncoderError: If the checkpoint was trained with another encoder.
+            CheckpointError: If its representation is unknown.
+        """
+        config = checkpoint.denoiser.config
+        trained_with = (config.text_encoder, checkpoint.text_encoder_sha256)
+        if trained_with != (encoder.name, encoder.sha256):
+            raise TextEncoderError(
+                f"these weights were trained with {trained_with[0]} {trained_with[1][:12]}…, "
+                f"not with {encoder.name} {encoder.sha256[:12]}…"
+            )
+        if config.representation not in REPRESENTATIONS:
+            raise CheckpointError(
+                f"unknown representation '{config.representation}'; known: "
+                f"{', '.join(REPRESENTATIONS)}"
+            )
+        self._checkpoint, self._encoder = checkpoint, encoder
+        self._representation = REPRESENTATIONS[config.representation]()
+
+    @classmethod
+    def from_pretrained(
+        cls, folder: Path, text_encoder: Path | None = None, *, device: str = "cpu"
+    ) -> MotionPipeline:
+        """Load a checkpoint folder and the encoder it names.
+
+        Args:
+            folder: The checkpoint.
+            text_encoder: Folder of the encoder's files, where they do not come with a package.
+            device: Torch device of the denoiser.
+
+        Raises:
+            CheckpointError: If the checkpoint or the device cannot be used.
+            TextEncoderError: If the encoder cannot be used.
+        """
+        checkpoint = Checkpoint.from_pretrained(folder)
+        try:
+            checkpoint.denoiser.to(device)
+        except (RuntimeError, AssertionError) as error:
+            raise CheckpointError(f"device '{device}' cannot be used: {error}") from error
+        name = checkpoint.denoiser.config.text_encoder
+        return cls(checkpoint, load_text_encoder(name, text_encoder))
+
+    @property
+    def fps(self) -> float:
+        """Frame rate of the motions, Hz."""
+        return self._checkpoint.denoiser.config.fps
+
+    @property
+    def weights_sha256(self) -> str:
+        """Hash of the weights file."""
+        return self._checkpoint.sha256
+
+    def __call__(
+        self,
+        texts: tuple[TimedText, ...],
+        frames: int,
+        *,
+        config: SamplerConfig,
+        candidates: int,
+        seed: int,
+        blend_frames: int,
+        on_step: Callable[[int, int], None] | None = None,
+        cancelled: Callable[[], bool] | None = None,
+    ) -> Samples:
+        """Sample candidates of one timeline; see `compose` and `sample`."""
+        denoiser = self._checkpoint.denoiser
+        windows = compose(
+            texts,
+            frames,
+            self._representation,
+            max_frames=denoiser.config.max_frames,
+            blend_frames=blend_frames,
+        )
+        began = time.perf_counter()
+        tokens = self._encoder.encode([w.text for w in windows] + [""])
+        with torch.inference_mode():
+            every = denoiser.condition(
+                tokens.states.to(denoiser.device), tokens.mask.to(denoiser.device)
+            )
+        encoded = time.perf_counter()
+        features = sample(
+            denoiser,
+            windows,
+            every.expand(torch.arange(len(windows))),
+            every.expand(torch.tensor([len(windows)])),
+            config,
+            frames=frames,
+            candidates=candidates,
+            seed=seed,
+            on_step=on_step,
+            cancelled=cancelled,
+        )
+        clean = self._checkpoint.statistics.denormalise(features.cpu().numpy())
+        motions = tuple(self._representation.decode(row, self.fps) for row in clean)
+        return Samples(motions, encoded - began, time.perf_counter() - encoded)

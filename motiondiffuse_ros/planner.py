@@ -1,0 +1,321 @@
+"""The use case: from a `MotionRequest` to a `Plan`. No ROS, no command line."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, TypeVar
+
+from motiondiffuse_ros.diffusion.composition import TimedText
+from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.errors import Cancelled, RequestError
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion.bvh import write_bvh
+from motiondiffuse_ros.physics.report import Report, assess
+from motiondiffuse_ros.request import LIMITS, MotionRequest
+from motiondiffuse_ros.robots import JointTrajectory, Robot, build_trajectory, get_robot
+
+_T = TypeVar("_T")
+_MAX_DRAWN_SEED = 2**31
+# share of the work, for the fraction of a progress report
+_STAGES = {"text": 0.02, "sampling": 0.68, "physics": 0.25, "retargeting": 0.05}
+
+
+def shipped_weights() -> Path:
+    """Return the folder of the weights that come with the package."""
+    return Path(str(files("motiondiffuse_ros"))) / "weights" / "base"
+
+
+@dataclass(frozen=True)
+class PlannerConfig:
+    """How requests are planned, where they do not say so themselves.
+
+    Attributes:
+        weights: Checkpoint folder; None is the shipped one.
+        text_encoder: Folder of the text encoder's files, if the checkpoint was trained with CLIP.
+        scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
+        steps: Denoising steps.
+        guidance_scale: Classifier-free guidance.
+        candidates: Motions to choose the most plausible from.
+        control_rate: Rate of the trajectory, Hz.
+        track: Whether the chosen motion is also judged by simulated tracking.
+        device: Torch device of the denoiser.
+    """
+
+    weights: Path | None = None
+    text_encoder: Path | None = None
+    scheduler: str = "ddim"
+    steps: int = 30
+    guidance_scale: float = 2.5
+    candidates: int = 4
+    control_rate: float = 50.0
+    track: bool = True
+    device: str = "cpu"
+
+    def validate(self) -> None:
+        """Raise RequestError if a value is out of range."""
+        SamplerConfig(self.scheduler, self.steps, self.guidance_scale).validate()
+        if not 1 <= self.candidates <= LIMITS.max_candidates:
+            raise RequestError(
+                f"candidates must be from 1 to {LIMITS.max_candidates}, got {self.candidates}"
+            )
+        if not 1.0 <= self.control_rate <= 1000.0:
+            raise RequestError(f"control_rate must be from 1 to 1000 Hz, got {self.control_rate}")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a plan stands.
+
+    Attributes:
+        stage: "text", "sampling", "physics" or "retargeting".
+        fraction: Of the whole plan, 0 to 1; never falls.
+        preview: What is known of the verdict so far; may be empty.
+    """
+
+    stage: str
+    fraction: float
+    preview: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A motion, checked, as a trajectory for a robot.
+
+    Attributes:
+        request: With all defaults filled in.
+        seed: Of all randomness; with the same weights and settings it gives the same motion.
+        weights_sha256: Hash of the weights file.
+        robot: Name of the robot.
+        motion: The chosen candidate.
+        trajectory: For the robot's controller.
+        report: Physics verdict on the motion.
+        timings_s: Seconds for text, sampling, physics, retargeting and total.
+        candidate: Index of the chosen candidate.
+        scheduler: Sampler that was used.
+    """
+
+    request: MotionRequest
+    seed: int
+    weights_sha256: str
+    robot: str
+    motion: Motion = field(repr=False)
+    trajectory: JointTrajectory = field(repr=False)
+    report: Report
+    timings_s: dict[str, float]
+    candidate: int
+    scheduler: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of plan.json."""
+        return {
+            "request": self.request.to_dict(),
+            "seed": self.seed,
+            "weights_sha256": self.weights_sha256,
+            "robot": self.robot,
+            "joint_names": list(self.trajectory.joint_names),
+            "fps": self.motion.fps,
+            "duration_s": self.trajectory.duration,
+            "scheduler": self.scheduler,
+            "candidate": self.candidate,
+            "notes": list(self.trajectory.notes),
+            "report": self.report.to_dict(),
+            "timings_s": self.timings_s,
+        }
+
+    def save(self, folder: Path) -> None:
+        """Write plan.json, report.json, motion.bvh, motion.npz, trajectory.csv and root.csv."""
+        folder.mkdir(parents=True, exist_ok=True)
+        write_bvh(self.motion, folder / "motion.bvh")
+        self.motion.save_npz(folder / "motion.npz")
+        self.trajectory.save_csv(folder / "trajectory.csv")
+        self.trajectory.save_root_csv(folder / "root.csv")
+        _write_json(self.report.to_dict(), folder / "report.json")
+        _write_json(self.to_dict(), folder / "plan.json")
+
+
+class Planner:
+    """Plans requests with one set of weights."""
+
+    def __init__(self, config: PlannerConfig = PlannerConfig()) -> None:
+        """Load the weights and their text encoder.
+
+        Raises:
+            RequestError: If the configuration is invalid.
+            CheckpointError: If the weights cannot be used.
+            TextEncoderError: If the text encoder cannot be used.
+        """
+        config.validate()
+        self.config = config
+        weights = shipped_weights() if config.weights is None else config.weights
+        self._pipeline = MotionPipeline.from_pretrained(
+            weights, config.text_encoder, device=config.device
+        )
+
+    @property
+    def weights_sha256(self) -> str:
+        """Hash of the weights file."""
+        return self._pipeline.weights_sha256
+
+    def plan(
+        self,
+        request: MotionRequest,
+        *,
+        progress: Callable[[Progress], None] | None = None,
+        cancelled: Callable[[], bool] | None = None,
+    ) -> Plan:
+        """Sample, choose, check and retarget.
+
+        Args:
+            request: What to do.
+            progress: Told of every stage and denoising step.
+            cancelled: Asked before every denoising step and between stages.
+
+        Raises:
+            RequestError: If the request is invalid; before any work.
+            RobotError: If the robot is unknown; before any work.
+            Cancelled: If `cancelled` said so.
+        """
+        request.validate()
+        robot = get_robot(request.robot)
+        config = self.config
+        request = request.with_defaults(
+            duration=request.total_seconds,
+            seed=secrets.randbelow(_MAX_DRAWN_SEED),
+            guidance_scale=config.guidance_scale,
+            steps=config.steps,
+            candidates=config.candidates,
+        )
+        watch = _Stages(progress, cancelled)
+        motions = self._sample(request, watch)
+        chosen, report = self._choose(motions, request, robot, watch)
+        trajectory = watch.run(
+            "retargeting", lambda: build_trajectory(robot, motions[chosen], config.control_rate)
+        )
+        assert request.seed is not None
+        return Plan(
+            request=request,
+            seed=request.seed,
+            weights_sha256=self.weights_sha256,
+            robot=robot.name,
+            motion=motions[chosen],
+            trajectory=trajectory,
+            report=report,
+            timings_s=watch.timings(),
+            candidate=chosen,
+            scheduler=config.scheduler,
+        )
+
+    def _sample(self, request: MotionRequest, watch: _Stages) -> tuple[Motion, ...]:
+        assert request.guidance_scale is not None and request.steps is not None
+        assert request.candidates is not None and request.seed is not None
+        watch.enter("text")
+        texts, frames = timeline(request, self._pipeline.fps)
+        samples = self._pipeline(
+            texts,
+            frames,
+            config=SamplerConfig(self.config.scheduler, request.steps, request.guidance_scale),
+            candidates=request.candidates,
+            seed=request.seed,
+            blend_frames=round(LIMITS.blend * self._pipeline.fps),
+            on_step=lambda done, total: watch.advance("sampling", done / total),
+            cancelled=watch.cancelled,
+        )
+        watch.record("text", samples.text_seconds)
+        watch.record("sampling", samples.sampling_seconds)
+        return samples.motions
+
+    def _choose(
+        self, motions: tuple[Motion, ...], request: MotionRequest, robot: Robot, watch: _Stages
+    ) -> tuple[int, Report]:
+        """Return the most plausible candidate and its full report."""
+
+        def judge() -> tuple[int, Report]:
+            best, score = 0, -1.0
+            if len(motions) > 1:
+                for i, motion in enumerate(motions):
+                    quick = assess(motion, robot=robot, track=False, cancelled=watch.cancelled)
+                    if quick.score > score:
+                        best, score = i, quick.score
+                    watch.advance("physics", 0.6 * (i + 1) / len(motions), quick.verdict)
+            report = assess(
+                motions[best],
+                segments=request.segments,
+                robot=robot,
+                track=self.config.track,
+                cancelled=watch.cancelled,
+            )
+            watch.advance("physics", 1.0, report.verdict)
+            return best, report
+
+        return watch.run("physics", judge)
+
+
+def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...], int]:
+    """Return a request's texts in frames, and the number of frames (both ends included)."""
+    frames = round(request.total_seconds * fps) + 1
+    texts = []
+    for segment in request.segments:
+        start, stop = round(segment.start * fps), round(segment.end * fps)
+        # the frame at the very end belongs to whoever ends there
+        texts.append(
+            TimedText(
+                segment.text.strip(), start, frames if stop >= frames - 1 else stop, segment.parts
+            )
+        )
+    return tuple(texts), frames
+
+
+class _Stages:
+    """Progress, cancellation and timings of one plan."""
+
+    def __init__(
+        self,
+        progress: Callable[[Progress], None] | None,
+        cancelled: Callable[[], bool] | None,
+    ) -> None:
+        self._progress, self._cancelled = progress, cancelled
+        self._began = time.perf_counter()
+        self._seconds = dict.fromkeys(_STAGES, 0.0)
+
+    def cancelled(self) -> bool:
+        return self._cancelled is not None and self._cancelled()
+
+    def enter(self, stage: str) -> None:
+        if self.cancelled():
+            raise Cancelled(f"canceled before {stage}")
+        self.advance(stage, 0.0)
+
+    def advance(self, stage: str, fraction: float, preview: str = "") -> None:
+        if self._progress is not None:
+            before = 0.0
+            for name, share in _STAGES.items():
+                if name == stage:
+                    break
+                before += share
+            self._progress(Progress(stage, before + fraction * _STAGES[stage], preview))
+
+    def run(self, stage: str, work: Callable[[], _T]) -> _T:
+        self.enter(stage)
+        began = time.perf_counter()
+        result = work()
+        self.record(stage, time.perf_counter() - began)
+        self.advance(stage, 1.0)
+        return result
+
+    def record(self, stage: str, seconds: float) -> None:
+        self._seconds[stage] = seconds
+
+    def timings(self) -> dict[str, float]:
+        rounded = {stage: round(seconds, 4) for stage, seconds in self._seconds.items()}
+        return {**rounded, "total": round(time.perf_counter() - self._began, 4)}
+
+
+def _write_json(data: dict[str, Any], path: Path) -> None:
+    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
