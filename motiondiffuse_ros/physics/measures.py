@@ -108,7 +108,7 @@ def measure(motion: Motion, limits: Limits) -> dict[str, Series]:
 
 def _worst(values: Array, frames: int, names: Sequence[str]) -> Series:
     """Reduce [n, J] to the largest of the columns and its name."""
-    return _aligned(values.max(axis=1), frames, [names[j] for j in values.argmax(axis=1)])
+    return _aligned(values.max(axis=1), frames, [names[int(j)] for j in values.argmax(axis=1)])
 
 
 def _aligned(values: Array, frames: int, who: list[str] | None = None) -> Series:
