@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import os
+import sys
+from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
+import tyro
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from motiondiffuse_ros.action import GenerateMotion
-from motiondiffuse_ros.errors import ErrorCode, MotionDiffuseError, RequestError
+from motiondiffuse_ros.cli.parsing import parse
+from motiondiffuse_ros.errors import ErrorCode
 from motiondiffuse_ros.render.executed_motion import render_executed_motion
 from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.robots.simulation import ExecutedMotion
 from motiondiffuse_ros.ros.client import Feedback, MotionClient, Unreachable
 from motiondiffuse_ros.ros.conversions import request_to_message
@@ -26,57 +33,64 @@ WORK_TIMEOUT = 600.0
 """For planning, and again for following [s]."""
 
 
-def run_demo(
-    text: str = "a person walks forward and waves with the right hand",
-    *,
-    seconds: float = 6.0,
-    seed: int = 7,
-    weights: Path | None = None,
-    robot: str = "humanoid",
-    out: Path = Path("out"),
-) -> int:
+@dataclass(frozen=True)
+class Demo:
     """Plan a motion from text and let a simulated robot do it, as separate ROS 2 processes.
 
     Starts the nodes `motiondiffuse` and `sim`, sends the text as an action goal, waits until the
-    robot has followed the trajectory, and leaves in the folder: plan.json, report.json,
-    trajectory.csv, root.csv, motion.bvh, motion.npz, executed.npz, demo.gif (or demo.mp4), and
-    what the nodes printed in log/. Uses ROS_DOMAIN_ID if it is set, so that other tools can
-    watch, and a domain of its own otherwise.
-
-    Args:
-        text: What to do, in plain English.
-        seconds: Length of the motion [s].
-        seed: Of the noise.
-        weights: Checkpoint folder; the shipped one if not given.
-        robot: Robot to plan for and to simulate.
-        out: Folder for the results.
-
-    Returns:
-        Exit code: 0, 2 if the request was refused, 1 if anything else failed.
+    robot has followed the trajectory, and leaves in the output folder: plan.json, report.json,
+    trajectory.csv, root.csv, motion.bvh, motion.npz, executed.npz, demo.gif (demo.mp4 where
+    imageio-ffmpeg is installed) and what the nodes printed in log/. Uses ROS_DOMAIN_ID if it is
+    set, so that other tools can watch, and a domain of its own otherwise.
     """
-    console = Console()
-    try:
-        request = MotionRequest.from_text(text, seconds=seconds, seed=seed, robot=robot)
-        request.validate()
-    except RequestError as error:
-        console.print(f"[red]{error}[/red]")
-        return 2
-    out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
+
+    text: Annotated[str, tyro.conf.Positional] = "a person walks forward and waves"
+    """What to do, in plain English."""
+    seconds: float = 6.0
+    """Length of the motion [s]."""
+    seed: int = 7
+    """Of all randomness."""
+    steps: int | None = None
+    """Denoising steps."""
+    candidates: int | None = None
+    """Motions to choose the most plausible from."""
+    weights: Path | None = None
+    """Checkpoint folder; the shipped one if not given."""
+    robot: str = "humanoid"
+    """Robot to plan for and to simulate."""
+    out: Path = Path("out")
+    """Folder for the results."""
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run the command; returns the exit code."""
+    options = parse(Demo, arguments, "demo")
+    request = MotionRequest.from_text(
+        options.text,
+        options.seconds,
+        seed=options.seed,
+        steps=options.steps,
+        candidates=options.candidates,
+        robot=options.robot,
+    )
+    request.validate()
+    get_robot(request.robot)
+    out = options.out.resolve()
     executed = out / "executed.npz"
     executed.unlink(missing_ok=True)
-    os.environ.setdefault("ROS_LOG_DIR", str(out / "log"))
+    os.environ.setdefault("ROS_LOG_DIR", str(out / "log" / "ros"))
     isolate(os.environ, os.getpid())
+    console = Console()
     try:
-        _plan_and_follow(request, weights, out, executed, console)
-        picture = render_executed_motion(ExecutedMotion.load_npz(executed), out / "demo")
+        _plan_and_follow(request, options.weights, executed, console)
     except _GoalFailed as failure:
-        console.print(f"[red]{failure}[/red]")
+        print(f"motiondiffuse: {failure}", file=sys.stderr)
         return failure.exit_code
-    except (Unreachable, MotionDiffuseError) as error:
-        console.print(f"[red]{error}[/red]; see {out / 'log'}")
+    except Unreachable as error:
+        print(f"motiondiffuse: {error}; see {out / 'log'}", file=sys.stderr)
         return 1
-    console.print(f"{picture} shows what the robot did; everything is in {out}")
+    picture = render_executed_motion(ExecutedMotion.load_npz(executed), out / "demo")
+    console.print(f"{picture.name} shows what the robot did; all is in {out}", highlight=False)
     return 0
 
 
@@ -90,8 +104,9 @@ class _GoalFailed(Exception):
 
 
 def _plan_and_follow(
-    request: MotionRequest, weights: Path | None, out: Path, executed: Path, console: Console
+    request: MotionRequest, weights: Path | None, executed: Path, console: Console
 ) -> None:
+    out = executed.parent
     log = out / "log"
     with ExitStack() as stack:
         node = stack.enter_context(

@@ -20,6 +20,7 @@ from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.planner import Planner, Progress
 from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.conversions import request_from_message
 from motiondiffuse_ros.ros.diagnostics import Diagnostics
 from motiondiffuse_ros.ros.parameter_spec import Parameters
@@ -76,6 +77,7 @@ class MotionDiffuseNode(LifecycleNode):
         self._health.set("warn", "loading weights and robot")
         try:
             planner = Planner(planner_config(self.settings))
+            get_robot(self.settings["robot"])
         except MotionDiffuseError as error:
             return self._refuse_to_configure(str(error))
         except Exception as error:

@@ -15,6 +15,11 @@ _DEFAULT = PlannerConfig()
 PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "autostart": ParameterSpec(True, "configure and activate at start", at_configure=True),
     "weights": ParameterSpec("", "checkpoint folder; empty = the shipped one", at_configure=True),
+    "text_encoder": ParameterSpec(
+        "",
+        "folder of the text encoder of a checkpoint trained with CLIP; empty = not needed",
+        at_configure=True,
+    ),
     "robot": ParameterSpec(
         "humanoid",
         "robot of requests that name none",
@@ -62,7 +67,8 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
 def planner_config(parameters: Parameters) -> PlannerConfig:
     """Return the planner's configuration."""
     return PlannerConfig(
-        weights=Path(parameters["weights"]) if parameters["weights"] else None,
+        weights=_path(parameters["weights"]),
+        text_encoder=_path(parameters["text_encoder"]),
         scheduler=parameters["scheduler"],
         steps=parameters["steps"],
         guidance_scale=parameters["guidance_scale"],
@@ -82,3 +88,7 @@ def complete(request: MotionRequest, parameters: Parameters) -> MotionRequest:
         candidates=parameters["candidates"],
         seed=None if seed < 0 else seed,
     )
+
+
+def _path(value: str) -> Path | None:
+    return Path(value).expanduser() if value else None

@@ -6,6 +6,7 @@ from motiondiffuse_ros.ros.conversions.request import request_from_message, requ
 from motiondiffuse_ros.ros.conversions.trajectory import (
     joint_trajectory_to_message,
     root_trajectory_to_message,
+    trajectory_from_messages,
 )
 
 __all__ = [
@@ -15,4 +16,5 @@ __all__ = [
     "request_from_message",
     "request_to_message",
     "root_trajectory_to_message",
+    "trajectory_from_messages",
 ]

@@ -1,0 +1,132 @@
+"""Messages and dataclasses carry the same."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rclpy.serialization import deserialize_message, serialize_message
+from std_msgs.msg import Header
+from synthetic import waving
+
+from motiondiffuse_ros.errors import InputError, RequestError
+from motiondiffuse_ros.motion import PARTS
+from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
+from motiondiffuse_ros.msg import PlausibilityReport
+from motiondiffuse_ros.physics.report import METRICS, Report
+from motiondiffuse_ros.request import MotionRequest, Segment
+from motiondiffuse_ros.robots import build_trajectory, get_robot
+from motiondiffuse_ros.ros.conversions import (
+    joint_trajectory_to_message,
+    report_to_message,
+    request_from_message,
+    request_to_message,
+    root_trajectory_to_message,
+    trajectory_from_messages,
+)
+
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+segments = st.builds(
+    Segment,
+    text=st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=40),
+    start=numbers,
+    end=numbers,
+    parts=st.lists(st.sampled_from(tuple(PARTS)), max_size=3).map(tuple),
+)
+requests = st.builds(
+    MotionRequest,
+    segments=st.lists(segments, max_size=4).map(tuple),
+    duration=st.none() | st.floats(0.5, 100.0),
+    seed=st.none() | st.integers(0, 2**63 - 1),
+    guidance_scale=st.none() | st.floats(0.1, 20.0),
+    steps=st.none() | st.integers(1, 1000),
+    candidates=st.none() | st.integers(1, 64),
+    robot=st.sampled_from(["humanoid", "g1"]),
+)
+
+
+@settings(deadline=None)
+@given(requests)
+def test_a_request_survives_the_wire(request):
+    wire = serialize_message(request_to_message(request))
+    assert request_from_message(deserialize_message(wire, MotionRequestMsg), robot="x") == request
+
+
+def test_an_empty_message_leaves_everything_to_the_node():
+    request = request_from_message(MotionRequestMsg(), robot="humanoid")
+    assert request == MotionRequest(segments=(), robot="humanoid")
+
+
+def test_a_negative_seed_is_refused():
+    with pytest.raises(RequestError, match="seed is -2"):
+        request_from_message(MotionRequestMsg(seed=-2), robot="humanoid")
+
+
+def test_a_trajectory_survives_the_wire():
+    trajectory = build_trajectory(get_robot("humanoid"), waving(40))
+    back = trajectory_from_messages(
+        joint_trajectory_to_message(trajectory, Header()),
+        root_trajectory_to_message(trajectory, Header()),
+    )
+    assert back.joint_names == trajectory.joint_names
+    assert np.allclose(back.times, trajectory.times, atol=1e-9)
+    for name in (
+        *("positions", "velocities", "root_position", "root_orientation"),
+        *("root_linear_velocity", "root_angular_velocity"),
+    ):
+        assert np.array_equal(getattr(back, name), getattr(trajectory, name)), name
+
+
+def broken(kind):
+    trajectory = build_trajectory(get_robot("humanoid"), waving(40))
+    joints = joint_trajectory_to_message(trajectory, Header())
+    root = root_trajectory_to_message(trajectory, Header())
+    if kind == "no points":
+        joints.points = []
+    elif kind == "missing velocity":
+        joints.points[3].velocities.pop()
+    elif kind == "not a number":
+        joints.points[3].positions[0] = math.nan
+    elif kind == "times stand still":
+        joints.points[3].time_from_start = joints.points[2].time_from_start
+    elif kind == "root of another length":
+        root.points = root.points[:-1]
+    else:
+        root.points[0].transforms = []
+    return joints, root
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *("no points", "missing velocity", "not a number", "times stand still"),
+        *("root of another length", "no root pose"),
+    ],
+)
+def test_a_broken_trajectory_is_refused(kind):
+    with pytest.raises(InputError):
+        trajectory_from_messages(*broken(kind))
+
+
+def test_the_message_has_every_metric_of_the_report():
+    fields = PlausibilityReport.get_fields_and_field_types()
+    assert set(METRICS) <= set(fields)
+    assert all(fields[name] == "double" for name in METRICS)
+
+
+def test_a_report_keeps_its_numbers_and_says_what_was_not_computed():
+    report = Report(
+        verdict="marginal",
+        reasons=("left foot slides",),
+        score=0.5,
+        metrics={"skate_mm": 3.0, "float_mm": None},
+        segments=(),
+    )
+    message = report_to_message(report)
+    assert message.verdict == PlausibilityReport.MARGINAL
+    assert message.reasons == ["left foot slides"]
+    assert message.score == 0.5
+    assert message.skate_mm == 3.0
+    assert math.isnan(message.float_mm)
+    assert math.isnan(message.tracking_mpjpe_mm)
