@@ -143,6 +143,8 @@ def _add_geom(body: mujoco.MjsBody, solid: Solid) -> None:
 def _add_scene(spec: mujoco.MjSpec) -> None:
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1280, 960
+    # software renderers are common where this runs; shadows would take most of their time
+    spec.visual.quality.offsamples = 2
     spec.add_texture(
         name="sky",
         type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
@@ -172,7 +174,7 @@ def _add_scene(spec: mujoco.MjSpec) -> None:
         pos=[0, 0, 4],
         dir=[0.2, 0.3, -1],
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
-        castshadow=True,
+        castshadow=False,
     )
 
 

@@ -96,7 +96,7 @@ def _python_path() -> str:
 
 
 def _save_video(frames: np.ndarray, path: Path, fps: float) -> None:
-    import imageio_ffmpeg
+    import imageio_ffmpeg  # pyright: ignore[reportMissingImports]
 
     height, width = frames.shape[1:3]
     writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps)
