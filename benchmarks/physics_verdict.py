@@ -4,7 +4,8 @@
 
 Takes clips on level ground of both sets at random, up to 10 s of each, corrupts each in every
 way, and prints the share of each verdict, the mean score and the area under the ROC of the score
-(real against that corruption).
+(real against that corruption). A second table has the quantiles of real clips for each criterion,
+which the thresholds were set from.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ from motiondiffuse_ros.corpus import load_motion
 from motiondiffuse_ros.errors import MotionFileError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
-from motiondiffuse_ros.physics import assess
+from motiondiffuse_ros.physics import Report, assess
+from motiondiffuse_ros.physics.criteria import CRITERIA
 
 VERDICTS = ("plausible", "marginal", "implausible")
 MAX_SECONDS, MIN_SECONDS = 10.0, 1.0
@@ -156,11 +158,51 @@ def area_under_roc(real: np.ndarray, corrupted: np.ndarray) -> float:
     return float(np.mean((difference > 0.0) + 0.5 * (difference == 0.0)))
 
 
+def verdict_figures(rows: dict[str, list[tuple[str, Report]]]) -> dict[str, dict[str, float]]:
+    """Return shares of the verdicts, of what passes in each set, mean score and ROC area."""
+    real = np.array([report.score for _, report in rows["real"]])
+    figures = {}
+    for kind, results in rows.items():
+        scores = np.array([report.score for _, report in results])
+        verdicts = np.array([report.verdict for _, report in results])
+        sets = np.array([name for name, _ in results])
+        figures[kind] = {v: float(np.mean(verdicts == v)) for v in VERDICTS}
+        for name in ("cmu", "bandai-namco"):
+            figures[kind][name] = float(np.mean(verdicts[sets == name] != "implausible"))
+        figures[kind]["score"] = float(scores.mean())
+        figures[kind]["roc_area"] = area_under_roc(real, scores)
+    return figures
+
+
+def verdict_table(figures: dict[str, dict[str, float]]) -> Table:
+    """Lay out `verdict_figures`."""
+    table = Table("", *VERDICTS, "not implausible: cmu", "bandai-namco", "mean score", "ROC area")
+    for kind, row in figures.items():
+        shares = [f"{row[key]:.0%}" for key in (*VERDICTS, "cmu", "bandai-namco")]
+        area = "" if kind == "real" else f"{row['roc_area']:.3f}"
+        table.add_row(kind, *shares, f"{row['score']:.2f}", area)
+    return table
+
+
+def quantile_table(real: list[tuple[str, Report]]) -> Table:
+    """Return the criteria with quantiles over real clips and their thresholds."""
+    quantiles = (0.5, 0.9, 0.95, 0.98)
+    heads = [f"{name} {q:.0%}" for name in ("cmu", "b-n") for q in quantiles]
+    table = Table("criterion", *heads, "marginal", "implausible")
+    for criterion in CRITERIA:
+        cells = []
+        for name in ("cmu", "bandai-namco"):
+            values = [report.metrics[criterion.name] or 0.0 for s, report in real if s == name]
+            cells += [f"{v:.3g}" for v in np.quantile(values, quantiles)]
+        table.add_row(criterion.name, *cells, str(criterion.marginal), str(criterion.implausible))
+    return table
+
+
 def main(arguments: Arguments) -> None:
     """Print the table and write the figures."""
     rng = np.random.default_rng(arguments.seed)
     clips = choose_clips(arguments, rng)
-    rows: dict[str, list[tuple[str, str, float]]] = {name: [] for name in CORRUPTIONS}
+    rows: dict[str, list[tuple[str, Report]]] = {name: [] for name in CORRUPTIONS}
     seconds = spent = 0.0
     for name, motion in track(clips, description="clips"):
         for kind, corrupt in CORRUPTIONS.items():
@@ -169,26 +211,10 @@ def main(arguments: Arguments) -> None:
             report = assess(changed, track=False)
             spent += time.perf_counter() - begin
             seconds += changed.duration
-            rows[kind].append((name, report.verdict, report.score))
-    table = Table("", *VERDICTS, "not implausible: cmu", "bandai-namco", "mean score", "ROC area")
-    figures: dict[str, dict[str, float]] = {}
-    real = np.array([score for _, _, score in rows["real"]])
-    for kind, results in rows.items():
-        scores = np.array([score for _, _, score in results])
-        shares = {v: float(np.mean([verdict == v for _, verdict, _ in results])) for v in VERDICTS}
-        passing = {
-            s: float(np.mean([v != "implausible" for name, v, _ in results if name == s]))
-            for s in ("cmu", "bandai-namco")
-        }
-        area = area_under_roc(real, scores)
-        figures[kind] = {**shares, **passing, "score": float(scores.mean()), "roc_area": area}
-        table.add_row(
-            kind,
-            *(f"{share:.0%}" for share in (*shares.values(), *passing.values())),
-            f"{scores.mean():.2f}",
-            "" if kind == "real" else f"{area:.3f}",
-        )
-    Console().print(table)
+            rows[kind].append((name, report))
+    figures = verdict_figures(rows)
+    Console().print(verdict_table(figures))
+    Console().print(quantile_table(rows["real"]))
     Console().print(f"{len(clips)} clips; {seconds / spent:.0f} times real time on this machine")
     if arguments.json is not None:
         summary = {"rows": figures, "clips": len(clips), "seed": arguments.seed}

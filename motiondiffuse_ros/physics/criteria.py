@@ -83,7 +83,7 @@ def _upper_decile(values: Array) -> float:
 CRITERIA = (
     Criterion(
         "penetrate_mm",
-        *("penetrate", np.mean, 14.0, 25.0),
+        *("penetrate", np.mean, 12.0, 22.0),
         words="{who} goes {size:.0f} mm into the floor",
         shown="penetrate",
         span_above=20.0,
