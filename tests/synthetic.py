@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import strategies as st
 
@@ -53,3 +55,14 @@ def smooth_motions(draw: st.DrawFn, max_amplitude: float = 1.2) -> Motion:
     )
     path = np.cumsum(rng.normal(size=(frames, 3)) * 0.01, axis=0)
     return Motion(path + np.array([0.0, 0.0, 1.0]), rot.from_rotation_vector(vectors), fps)
+
+
+def moved(motion: Motion, by: np.ndarray) -> Motion:
+    """Add a displacement [3] or [T, 3], m, to the path of the root."""
+    return replace(motion, root=motion.root + by)
+
+
+def drifting(motion: Motion, speed: float) -> Motion:
+    """Let the whole body glide forward at a speed [m/s]."""
+    times = np.arange(motion.frames)[:, None] / motion.fps
+    return moved(motion, times * np.array([speed, 0.0, 0.0]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -127,7 +128,7 @@ class Motion:
                 names = tuple(str(n) for n in data["joint_names"])
                 root, rotations = data["root"].astype(float), data["rotations"].astype(float)
                 fps = float(data["fps"])
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise MotionFileError(f"{path}: not a motion archive ({error})") from error
         if names != CANONICAL.names:
             raise MotionFileError(f"{path}: joints {names} are not the canonical {CANONICAL.names}")

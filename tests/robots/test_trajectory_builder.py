@@ -94,7 +94,7 @@ def test_files_hold_every_point(tmp_path):
     trajectory.save_root_csv(tmp_path / "root.csv")
     table = np.genfromtxt(tmp_path / "trajectory.csv", delimiter=",", names=True)
     assert len(table) == len(trajectory.times)
-    assert len(table.dtype) == 1 + 2 * 63
+    assert len(table.dtype.names or ()) == 1 + 2 * 63
     assert np.allclose(
         table["right_elbow_z_position"], trajectory.positions[:, _column("right_elbow_z")]
     )
