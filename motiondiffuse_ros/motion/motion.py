@@ -46,7 +46,9 @@ class Motion:
                 f"got {self.root.shape} and {self.rotations.shape}"
             )
         if frames == 0 or not self.fps > 0:
-            raise ValueError(f"a motion needs frames and a positive rate, got {frames} and {self.fps}")
+            raise ValueError(
+                f"a motion needs frames and a positive rate, got {frames} and {self.fps}"
+            )
 
     @property
     def frames(self) -> int:
@@ -134,4 +136,7 @@ class Motion:
             raise MotionFileError(f"{path}: joints {names} are not the canonical {CANONICAL.names}")
         if not (np.isfinite(root).all() and np.isfinite(rotations).all()):
             raise MotionFileError(f"{path}: root or rotations hold values that are not finite")
-        return cls(root, rot.normalise(rotations), fps)
+        try:
+            return cls(root, rot.normalise(rotations), fps)
+        except ValueError as error:
+            raise MotionFileError(f"{path}: {error}") from error

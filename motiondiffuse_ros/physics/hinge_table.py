@@ -1,8 +1,9 @@
 """The humanoid's 63 hinges: order of axes, ranges, speeds, torques and gains of every joint.
 
-Ranges and speeds hold 99.9 % of the frames of real clips of both training sets with a margin, cut
-where a human joint ends. The order of axes is the one of the six whose middle axis stays farthest
-from 90 degrees in those clips (`benchmarks/humanoid_hinges.py` prints both).
+Ranges and speeds start from the quantiles of real clips of both training sets (0.05 and 99.95 %),
+with a margin, and are cut where a human joint ends. The order of axes was chosen among the six for
+how far the middle axis stays from 90 degrees in those clips, where hinges lock and angles jump;
+`benchmarks/humanoid_hinges.py` prints both.
 """
 
 from __future__ import annotations
