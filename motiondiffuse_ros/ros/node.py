@@ -114,10 +114,9 @@ class MotionDiffuseNode(LifecycleNode):
         self._health.set("warn", "finalized")
         return TransitionCallbackReturn.SUCCESS
 
-    def destroy_node(self) -> None:
-        """End the planning thread, then the node."""
+    def finish(self) -> None:
+        """End the work in hand, so that whoever waits for it is told."""
         self._stop_working("the node is going down")
-        super().destroy_node()
 
     def _refuse_to_configure(self, reason: str) -> TransitionCallbackReturn:
         self.get_logger().error(f"not configured: {reason}")
@@ -279,7 +278,7 @@ def _feedback(progress: Progress) -> GenerateMotion.Feedback:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node; returns the exit code."""
-    return run_node(MotionDiffuseNode, args, threads=THREADS)
+    return run_node(MotionDiffuseNode, args, threads=THREADS, finish=MotionDiffuseNode.finish)
 
 
 if __name__ == "__main__":

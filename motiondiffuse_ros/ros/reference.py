@@ -55,11 +55,15 @@ class ReferenceStream:
             return
         trajectory, path, start = current
         now = self._node.get_clock().now()
-        elapsed = min((now - start).nanoseconds * 1e-9, trajectory.times[-1])
+        elapsed = (now - start).nanoseconds * 1e-9
         message = JointState(name=list(trajectory.joint_names))
         message.header.stamp = now.to_msg()
-        message.position = array("d", path(elapsed))
-        message.velocity = array("d", path(elapsed, 1))
+        if elapsed < trajectory.duration:
+            message.position = array("d", path(elapsed))
+            message.velocity = array("d", path(elapsed, 1))
+        else:  # exactly at rest, without a spline's rounding
+            message.position = array("d", trajectory.positions[-1])
+            message.velocity = array("d", trajectory.velocities[-1])
+            if self._current is current:
+                self.stop()
         self._publisher.publish(message)
-        if elapsed == trajectory.times[-1] and self._current is current:
-            self.stop()

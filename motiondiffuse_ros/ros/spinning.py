@@ -4,26 +4,49 @@ from __future__ import annotations
 
 import signal
 import sys
+import threading
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+AnyNode = TypeVar("AnyNode", bound=Node)
+
+_PERIOD = 0.1
+_LAST_TURNS = 5
 
 
-def run_node(create: Callable[[], Node], args: Sequence[str] | None = None, *, threads: int) -> int:
-    """Spin a node until Ctrl-C, SIGTERM or shutdown; its `destroy_node` ends what it started.
+def run_node(
+    create: Callable[[], AnyNode],
+    args: Sequence[str] | None = None,
+    *,
+    threads: int,
+    finish: Callable[[AnyNode], None] = lambda node: None,
+) -> int:
+    """Spin a node until Ctrl-C, SIGTERM or shutdown.
 
     Args:
         create: Makes the node, once rclpy is up.
         args: Command line with `--ros-args`; the process's own if None.
         threads: Of the executor.
+        finish: Ends the node's work while it can still answer its clients.
 
     Returns:
         Exit code: 0, or 2 if a parameter was refused (one line on stderr).
     """
-    rclpy.init(args=list(args) if args is not None else None)
+    stop = threading.Event()
+    # rclpy's own handlers would cut the node off before it has answered; and under a launcher
+    # Ctrl-C arrives twice
+    for kind in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(kind, lambda *_: stop.set())
+    rclpy.init(
+        args=list(args) if args is not None else None,
+        signal_handler_options=SignalHandlerOptions.NO,
+    )
     try:
         node = create()
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
@@ -33,13 +56,14 @@ def run_node(create: Callable[[], Node], args: Sequence[str] | None = None, *, t
     executor = MultiThreadedExecutor(num_threads=threads)
     executor.add_node(node)
     try:
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        # under a launcher Ctrl-C arrives twice: from the terminal and from the launcher
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-        node.destroy_node()
-        executor.shutdown()
-        rclpy.try_shutdown()
+        while not stop.is_set():
+            executor.spin_once(timeout_sec=_PERIOD)
+        finish(node)
+        for _ in range(_LAST_TURNS):
+            executor.spin_once(timeout_sec=_PERIOD)
+    except ExternalShutdownException:
+        finish(node)
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown()
     return 0
