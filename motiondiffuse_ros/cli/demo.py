@@ -21,7 +21,7 @@ from motiondiffuse_ros.render.executed_motion import render_executed_motion
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.robots.simulation import ExecutedMotion
-from motiondiffuse_ros.ros.client import Feedback, MotionClient, Unreachable
+from motiondiffuse_ros.ros.client import Feedback, MotionClient, NotConfigured, Unreachable
 from motiondiffuse_ros.ros.conversions import request_to_message
 from motiondiffuse_ros.ros.execution_status import stamp_key
 from motiondiffuse_ros.ros.processes import isolate, ros_arguments, running
@@ -86,6 +86,9 @@ def main(arguments: Sequence[str]) -> int:
     except _GoalFailed as failure:
         print(f"motiondiffuse: {failure}", file=sys.stderr)
         return failure.exit_code
+    except NotConfigured as error:
+        print(f"motiondiffuse: {error}", file=sys.stderr)
+        return 2
     except Unreachable as error:
         print(f"motiondiffuse: {error}; see {out / 'log'}", file=sys.stderr)
         return 1

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from types import TracebackType
 
 import rclpy
-from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.action.client import ActionClient, ClientGoalHandle
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -23,6 +23,10 @@ Alive = Callable[[], bool]
 
 class Unreachable(Exception):
     """The other side did not answer in time, or is gone."""
+
+
+class NotConfigured(Exception):
+    """The node could not load its weights or robot; the message is its own."""
 
 
 class MotionClient:
@@ -42,6 +46,8 @@ class MotionClient:
         self._executor.add_node(self.node)
         self._action = ActionClient(self.node, GenerateMotion, "motiondiffuse/generate_motion")
         self._execution = DiagnosticStatus()
+        self.health = DiagnosticStatus()
+        self.node.create_subscription(DiagnosticArray, "/diagnostics", self._on_health, 10)
         self.node.create_subscription(
             DiagnosticStatus, "sim/execution", self._on_execution, LATCHED
         )
@@ -79,9 +85,16 @@ class MotionClient:
         """Wait until the node takes goals, for at most `timeout` seconds.
 
         Raises:
-            Unreachable: If it does not.
+            NotConfigured: If it says that it cannot.
+            Unreachable: If there is no sign of it.
         """
-        self.wait(self._action.server_is_ready, timeout, "the node motiondiffuse")
+
+        def answered() -> bool:
+            return self._action.server_is_ready() or self.health.level == DiagnosticStatus.ERROR
+
+        self.wait(answered, timeout, "the node motiondiffuse")
+        if not self._action.server_is_ready():
+            raise NotConfigured(self.health.message)
 
     def generate(
         self, request: MotionRequest, on_feedback: Callable[[Feedback], None], timeout: float
@@ -145,6 +158,11 @@ class MotionClient:
 
         self.wait(finished, timeout, "the end of the execution")
         return values()
+
+    def _on_health(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.name.rpartition("/")[2] == "motiondiffuse":
+                self.health = status
 
     def _on_execution(self, message: DiagnosticStatus) -> None:
         self._execution = message

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.srv import SetParameters
@@ -32,15 +32,7 @@ pytestmark = pytest.mark.skipif(
 
 
 class Operator(MotionClient):
-    """Somebody who steers the node's lifecycle and reads its diagnostics."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.health = DiagnosticStatus()
-        self.node.create_subscription(DiagnosticArray, "/diagnostics", self._on_health, 10)
-
-    def _on_health(self, message: DiagnosticArray) -> None:
-        self.health = message.status[0]
+    """Somebody who steers the node's lifecycle."""
 
     def call(self, kind, name: str, request):
         service = self.node.create_client(kind, f"/motiondiffuse/{name}")
@@ -105,6 +97,7 @@ def test_bad_weights_fail_with_the_reason_and_good_ones_work_afterwards(graph, t
         assert operator.set("weights", "") == ""
         assert operator.change(Transition.TRANSITION_CONFIGURE)
         assert operator.state() == State.PRIMARY_STATE_INACTIVE
+        operator.wait(lambda: "configured, not" in operator.health.message, ANSWER, "its health")
         operator.wait_for_node(ANSWER)
         result = operator.generate(WALK, lambda feedback: None, ANSWER)
         assert result.error_code == ErrorCode.NOT_ACTIVE
