@@ -123,7 +123,10 @@ class SimNode(Node):
 
     def _on_change(self) -> None:
         if self._robot.state == "finished" and self._record is not None:
-            self._robot.executed().save_npz(self._record)
+            try:
+                self._robot.executed().save_npz(self._record)
+            except OSError as error:
+                self.get_logger().error(f"not recorded: {error}")
         self._execution.publish()
         self.get_logger().info(self._execution.summary())
 
