@@ -83,10 +83,10 @@ def _upper_decile(values: Array) -> float:
 CRITERIA = (
     Criterion(
         "penetrate_mm",
-        *("penetrate", np.mean, 12.0, 22.0),
+        *("penetrate", np.mean, 9.0, 15.0),
         words="{who} goes {size:.0f} mm into the floor",
         shown="penetrate",
-        span_above=20.0,
+        span_above=15.0,
     ),
     Criterion(
         "hover_mm",
@@ -111,21 +111,21 @@ CRITERIA = (
     ),
     Criterion(
         "root_residual_torque",
-        *("residual_torque", np.mean, 0.08, 0.13),
+        *("residual_torque", np.mean, 0.09, 0.13),
         words="{who} is out of balance by {size:.2f} body weights times metre",
         shown="residual_torque",
         span_above=0.1,
     ),
     Criterion(
         "contact_skating_ratio",
-        *("skates", np.mean, 0.3, 0.45),
+        *("skates", np.mean, 0.3, 0.42),
         words="{who} slides {size:.1f} m/s",
         shown="support_slide",
         span_above=0.3,
     ),
     Criterion(
         "support_slide_mps",
-        *("support_slide", np.median, 0.16, 0.3),
+        *("support_slide", np.median, 0.15, 0.28),
         words="{who} slides {size:.1f} m/s",
         shown="support_slide",
         span_above=0.3,
