@@ -2,7 +2,7 @@
 #   make demo     words -> plan -> simulated humanoid, with real ROS 2 processes; results in out/
 #   make test     the test suite
 #   make lint     ruff and pyright
-#   make bench    speed and quality tables
+#   make bench    the quality table that needs no corpus; benchmarks/ has more
 #   make colcon   build with colcon over the ROS wheels and import the interfaces
 #   make clean    remove everything these targets made
 
@@ -44,7 +44,8 @@ lint: venv
 	$(VENV)/bin/pyright
 
 bench: venv
-	$(VENV)/bin/python -m benchmarks
+	mkdir -p $(OUT)
+	$(VENV)/bin/python -m benchmarks.prompt_probes --json $(OUT)/prompt_probes.json
 
 $(COLCON)/.done: build_tools/colcon_wheels.txt
 	test -x $(COLCON)/bin/python || $(PYTHON) -m venv $(COLCON)
