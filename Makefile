@@ -1,4 +1,4 @@
-# Every target sets up what it needs. Only python3 (3.10 to 3.13), gcc and make have to be there.
+# Every target sets up what it needs. Only python3 (3.10 to 3.13), g++ and make have to be there.
 #   make demo     words -> plan -> simulated humanoid, with real ROS 2 processes; results in out/
 #   make test     the test suite
 #   make lint     ruff and pyright
