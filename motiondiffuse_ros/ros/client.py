@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from types import TracebackType
+from typing import TypeVar
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -19,6 +20,9 @@ from motiondiffuse_ros.ros.qos import LATCHED
 
 Feedback = GenerateMotion.Feedback
 Alive = Callable[[], bool]
+
+
+AnyClient = TypeVar("AnyClient", bound="MotionClient")
 
 
 class Unreachable(Exception):
@@ -52,7 +56,7 @@ class MotionClient:
             DiagnosticStatus, "sim/execution", self._on_execution, LATCHED
         )
 
-    def __enter__(self) -> MotionClient:
+    def __enter__(self: AnyClient) -> AnyClient:
         """Return itself."""
         return self
 

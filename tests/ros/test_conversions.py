@@ -1,6 +1,7 @@
 """Messages and dataclasses carry the same."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -78,10 +79,16 @@ def test_a_trajectory_survives_the_wire():
         assert np.array_equal(getattr(back, name), getattr(trajectory, name)), name
 
 
-def broken(kind):
+def messages() -> tuple[Any, Any]:
     trajectory = build_trajectory(get_robot("humanoid"), waving(40))
-    joints = joint_trajectory_to_message(trajectory, Header())
-    root = root_trajectory_to_message(trajectory, Header())
+    return (
+        joint_trajectory_to_message(trajectory, Header()),
+        root_trajectory_to_message(trajectory, Header()),
+    )
+
+
+def broken(kind) -> tuple[Any, Any]:
+    joints, root = messages()
     if kind == "no points":
         joints.points = []
     elif kind == "missing velocity":

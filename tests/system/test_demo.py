@@ -39,12 +39,12 @@ def test_it_leaves_plan_report_trajectory_and_picture_even_without_gl(graph):
     report = json.loads((out / "report.json").read_text())
     assert report["verdict"] in ("plausible", "marginal", "implausible")
     rows = np.genfromtxt(out / "trajectory.csv", delimiter=",", names=True)
-    assert len(rows.dtype.names) == 1 + 2 * 63
+    assert len(rows.dtype.names or ()) == 1 + 2 * 63
     assert Motion.load_npz(out / "motion.npz").frames > 20
     executed = ExecutedMotion.load_npz(out / "executed.npz")
     assert np.isfinite(executed.qpos).all()
     with Image.open(out / "demo.gif") as picture:
-        assert picture.n_frames > 10
+        assert getattr(picture, "n_frames", 1) > 10
     for log in ("node.log", "sim.log"):
         assert "Traceback" not in (out / "log" / log).read_text()
 

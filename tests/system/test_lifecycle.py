@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -34,7 +35,7 @@ pytestmark = pytest.mark.skipif(
 class Operator(MotionClient):
     """Somebody who steers the node's lifecycle."""
 
-    def call(self, kind, name: str, request):
+    def call(self, kind, name: str, request) -> Any:
         service = self.node.create_client(kind, f"/motiondiffuse/{name}")
         self.wait(service.service_is_ready, START, name)
         future = service.call_async(request)
@@ -163,6 +164,8 @@ def test_signals_end_it_cleanly_even_at_work_and_the_client_is_told(graph, how):
         result = handle.get_result_async()
         process.send_signal(how)
         client.wait(result.done, ANSWER, "the result")
-        assert result.result().result.error_code == ErrorCode.NOT_ACTIVE
+        answer = result.result()
+        assert answer is not None
+        assert answer.result.error_code == ErrorCode.NOT_ACTIVE
         assert process.wait(ANSWER) == 0
     assert "Traceback" not in log.read_text()
