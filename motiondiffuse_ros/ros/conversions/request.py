@@ -5,6 +5,7 @@ from __future__ import annotations
 from motiondiffuse_ros.errors import RequestError
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.msg import MotionSegment as MotionSegmentMsg
+from motiondiffuse_ros.physics.report import TimedText
 from motiondiffuse_ros.request import MotionRequest, Segment
 
 DRAWN = -1
@@ -47,7 +48,7 @@ def request_to_message(request: MotionRequest) -> MotionRequestMsg:
     )
 
 
-def segment_to_message(segment: Segment) -> MotionSegmentMsg:
+def segment_to_message(segment: TimedText) -> MotionSegmentMsg:
     """Write one segment."""
     return MotionSegmentMsg(
         text=segment.text,
