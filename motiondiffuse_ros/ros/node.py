@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import traceback
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
@@ -33,6 +34,9 @@ from motiondiffuse_ros.ros.spinning import run_node
 HEARTBEAT = 0.2
 """Period of the timer that ends withdrawn goals before they are started [s]."""
 
+LONGEST_ANSWER = 10.0
+"""For which an open goal can keep the node from going down [s]."""
+
 THREADS = 8
 """Of the executor: an active, a waiting and a superseded goal block one each while they wait."""
 
@@ -60,6 +64,8 @@ class MotionDiffuseNode(LifecycleNode):
         self.settings = Parameters(self, PLANNER_PARAMETERS)
         self._configured: _Configured | None = None
         self._queue: PlanningQueue[MotionPlan] | None = None
+        self._open_goals = 0
+        self._answered = threading.Condition()
         self._health = Diagnostics(self)
         self._health.set("warn", "unconfigured")
         self._group = MutuallyExclusiveCallbackGroup()
@@ -115,8 +121,10 @@ class MotionDiffuseNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def finish(self) -> None:
-        """End the work in hand, so that whoever waits for it is told."""
+        """End the work in hand and wait until every open goal has its result."""
         self._stop_working("the node is going down")
+        with self._answered:
+            self._answered.wait_for(lambda: self._open_goals == 0, LONGEST_ANSWER)
 
     def _refuse_to_configure(self, reason: str) -> TransitionCallbackReturn:
         self.get_logger().error(f"not configured: {reason}")
@@ -233,6 +241,16 @@ class MotionDiffuseNode(LifecycleNode):
 
     def _execute(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
         """Answer one goal. Blocks a thread of the executor, not the planning."""
+        with self._answered:
+            self._open_goals += 1
+        try:
+            return self._answer(goal)
+        finally:
+            with self._answered:
+                self._open_goals -= 1
+                self._answered.notify_all()
+
+    def _answer(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
         result = GenerateMotion.Result()
         try:
             request = request_from_message(goal.request.request, robot=self.settings["robot"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
@@ -17,7 +18,8 @@ from rclpy.signals import SignalHandlerOptions
 AnyNode = TypeVar("AnyNode", bound=Node)
 
 _PERIOD = 0.1
-_LAST_TURNS = 5
+_LAST_WORDS = 1.0
+"""Time for the answers of ended work to leave [s]."""
 
 
 def run_node(
@@ -59,7 +61,8 @@ def run_node(
         while not stop.is_set():
             executor.spin_once(timeout_sec=_PERIOD)
         finish(node)
-        for _ in range(_LAST_TURNS):
+        deadline = time.monotonic() + _LAST_WORDS
+        while time.monotonic() < deadline:
             executor.spin_once(timeout_sec=_PERIOD)
     except ExternalShutdownException:
         finish(node)
