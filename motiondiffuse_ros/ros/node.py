@@ -13,6 +13,7 @@ from pathlib import Path
 from rclpy.action.server import ActionServer, CancelResponse, ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.subscription import Subscription
 from std_msgs.msg import String
 
 from motiondiffuse_ros.action import GenerateMotion
@@ -47,7 +48,6 @@ class _Configured:
 
     planner: Planner
     publisher: PlanPublisher
-    release: Callable[[], None]
 
 
 class MotionDiffuseNode(LifecycleNode):
@@ -55,7 +55,8 @@ class MotionDiffuseNode(LifecycleNode):
 
     Topics (resolved in the node's namespace): in `~/text`, `~/request`; out `~/plan`,
     `~/joint_trajectory`, `~/root_trajectory`, `~/reference`, `/diagnostics`. Action:
-    `~/generate_motion`. The inputs exist once the node is configured.
+    `~/generate_motion`. The inputs exist from the first activation on, so that whoever waits for
+    them is not refused.
     """
 
     def __init__(self) -> None:
@@ -63,6 +64,7 @@ class MotionDiffuseNode(LifecycleNode):
         super().__init__("motiondiffuse")
         self.settings = Parameters(self, PLANNER_PARAMETERS)
         self._configured: _Configured | None = None
+        self._inputs: list[Subscription | ActionServer] = []
         self._queue: PlanningQueue[MotionPlan] | None = None
         self._open_goals = 0
         self._answered = threading.Condition()
@@ -89,17 +91,21 @@ class MotionDiffuseNode(LifecycleNode):
         except Exception as error:
             self.get_logger().error(traceback.format_exc())
             return self._refuse_to_configure(f"{type(error).__name__}: {error}")
-        self._configured = self._create_interfaces(planner)
+        publisher = PlanPublisher(self, self.settings["frame_id"], self.settings["control_rate"])
+        self._configured = _Configured(planner, publisher)
         self.settings.locked = True
         self._health.set("warn", "configured, not active")
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Take work."""
+        super().on_activate(state)
         self._queue = PlanningQueue(self._plan)
+        if not self._inputs:
+            self._inputs = self._create_inputs()
         self._health.set("ok", "ready")
         self.get_logger().info("ready for text and goals")
-        return super().on_activate(state)
+        return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """End the work in hand; refuse new work."""
@@ -131,9 +137,8 @@ class MotionDiffuseNode(LifecycleNode):
         self._health.set("error", f"not configured: {reason}")
         return TransitionCallbackReturn.FAILURE
 
-    def _create_interfaces(self, planner: Planner) -> _Configured:
-        publisher = PlanPublisher(self, self.settings["frame_id"], self.settings["control_rate"])
-        subscriptions = [
+    def _create_inputs(self) -> list[Subscription | ActionServer]:
+        return [
             self.create_subscription(
                 String, "~/text", self._on_text, COMMANDS, callback_group=self._group
             ),
@@ -144,23 +149,15 @@ class MotionDiffuseNode(LifecycleNode):
                 COMMANDS,
                 callback_group=self._group,
             ),
+            ActionServer(
+                self,
+                GenerateMotion,
+                "~/generate_motion",
+                self._execute,
+                callback_group=ReentrantCallbackGroup(),
+                cancel_callback=lambda goal: CancelResponse.ACCEPT,
+            ),
         ]
-        server = ActionServer(
-            self,
-            GenerateMotion,
-            "~/generate_motion",
-            self._execute,
-            callback_group=ReentrantCallbackGroup(),
-            cancel_callback=lambda goal: CancelResponse.ACCEPT,
-        )
-
-        def release() -> None:
-            server.destroy()
-            for subscription in subscriptions:
-                self.destroy_subscription(subscription)
-            publisher.destroy()
-
-        return _Configured(planner, publisher, release)
 
     def _stop_working(self, reason: str) -> None:
         if self._queue is not None:
@@ -170,8 +167,14 @@ class MotionDiffuseNode(LifecycleNode):
             self._configured.publisher.reference.stop()
 
     def _release(self) -> None:
+        for entity in self._inputs:
+            if isinstance(entity, Subscription):
+                self.destroy_subscription(entity)
+            else:
+                entity.destroy()
+        self._inputs = []
         if self._configured is not None:
-            self._configured.release()
+            self._configured.publisher.destroy()
             self._configured = None
         self.settings.locked = False
 

@@ -98,8 +98,10 @@ def test_bad_weights_fail_with_the_reason_and_good_ones_work_afterwards(graph, t
         assert operator.set("weights", "") == ""
         assert operator.change(Transition.TRANSITION_CONFIGURE)
         assert operator.state() == State.PRIMARY_STATE_INACTIVE
-        operator.wait(lambda: "configured, not" in operator.health.message, ANSWER, "its health")
+        assert operator.change(Transition.TRANSITION_ACTIVATE)
+        operator.wait(lambda: operator.health.message == "ready", ANSWER, "its health")
         operator.wait_for_node(ANSWER)
+        assert operator.change(Transition.TRANSITION_DEACTIVATE)
         result = operator.generate(WALK, lambda feedback: None, ANSWER)
         assert result.error_code == ErrorCode.NOT_ACTIVE
         assert "activate" in result.message

@@ -5,20 +5,20 @@ import sys
 import time
 
 import rclpy
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory
 
 rclpy.init()
 node = rclpy.create_node("another_program")
 received = []
-latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-node.create_subscription(
-    JointTrajectory, "/motiondiffuse/joint_trajectory", received.append, latched
-)
+# default quality of service: nothing that was published before
+node.create_subscription(JointTrajectory, "/motiondiffuse/joint_trajectory", received.append, 10)
 publisher = node.create_publisher(String, "/motiondiffuse/text", 10)
 deadline = time.monotonic() + 120.0
-while publisher.get_subscription_count() == 0 and time.monotonic() < deadline:
+while time.monotonic() < deadline and (
+    publisher.get_subscription_count() == 0
+    or node.count_publishers("/motiondiffuse/joint_trajectory") == 0
+):
     rclpy.spin_once(node, timeout_sec=0.1)
 publisher.publish(String(data=sys.argv[1]))
 while not received and time.monotonic() < deadline:
