@@ -23,6 +23,7 @@ from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.robots.simulation import ExecutedMotion
 from motiondiffuse_ros.ros.client import Feedback, MotionClient, NotConfigured, Unreachable
 from motiondiffuse_ros.ros.conversions import request_to_message
+from motiondiffuse_ros.ros.conversions.report import VERDICTS
 from motiondiffuse_ros.ros.execution_status import stamp_key
 from motiondiffuse_ros.ros.processes import isolate, ros_arguments, running
 
@@ -160,11 +161,7 @@ def _progress_bar(console: Console) -> Progress:
 
 def _print_plan(console: Console, result: GenerateMotion.Result) -> None:
     plan = result.plan
-    verdicts = {
-        plan.report.PLAUSIBLE: "plausible",
-        plan.report.MARGINAL: "marginal",
-        plan.report.IMPLAUSIBLE: "implausible",
-    }
+    verdicts = {code: name for name, code in VERDICTS.items()}
     console.print(
         f"{plan.duration:.2f} s of {len(plan.trajectory.joint_names)} joints planned in "
         f"{plan.total_time:.2f} s (sampling {plan.sampling_time:.2f} s): "

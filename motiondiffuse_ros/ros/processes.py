@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, MutableMapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,7 +17,7 @@ LAST_DOMAIN = 101
 """Domains up to this one use ports below Linux's ephemeral ones."""
 
 
-def isolate(environment: dict[str, str], key: int) -> None:
+def isolate(environment: MutableMapping[str, str], key: int) -> None:
     """Keep this process and its children to this machine and, unless one is set, a domain.
 
     Args:
