@@ -1,6 +1,6 @@
 """Draw the sheet of imported clips in docs/: the eye's test of the skeleton maps.
 
-    python -m benchmarks.import_sheet --data DIR   # DIR holds cmu/ and bandai-namco/
+python -m benchmarks.import_sheet --data DIR   # DIR holds cmu/ and bandai-namco/
 """
 
 from __future__ import annotations

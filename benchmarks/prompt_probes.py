@@ -121,7 +121,11 @@ PROBES = (
         _waves("left", "right"),
     ),
     Probe("a person bows", "head 15 cm down and at least 10 cm up again", _bows),
-    Probe("a person sidesteps to the left", "over 20 cm left and more left than ahead", _sidesteps_left),
+    Probe(
+        "a person sidesteps to the left",
+        "over 20 cm left and more left than ahead",
+        _sidesteps_left,
+    ),
 )
 
 

@@ -17,6 +17,7 @@ from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.bvh import write_bvh
+from motiondiffuse_ros.physics.repair import put_on_floor
 from motiondiffuse_ros.physics.report import Report, assess
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import JointTrajectory, Robot, build_trajectory, get_robot
@@ -93,7 +94,7 @@ class Plan:
         seed: Of all randomness; with the same weights and settings it gives the same motion.
         weights_sha256: Hash of the weights file.
         robot: Name of the robot.
-        motion: The chosen candidate.
+        motion: The chosen candidate, its stance put on the floor.
         trajectory: For the robot's controller.
         report: Physics verdict on the motion.
         timings_s: Seconds for text, sampling, physics, retargeting and total.
@@ -213,8 +214,10 @@ class Planner:
         )
 
     def _sample(self, request: MotionRequest, watch: _Stages) -> tuple[Motion, ...]:
-        assert request.guidance_scale is not None and request.steps is not None
-        assert request.candidates is not None and request.seed is not None
+        assert request.guidance_scale is not None
+        assert request.steps is not None
+        assert request.candidates is not None
+        assert request.seed is not None
         watch.enter("text")
         texts, frames = timeline(request, self._pipeline.fps)
         samples = self._pipeline(
@@ -229,7 +232,7 @@ class Planner:
         )
         watch.record("text", samples.text_seconds)
         watch.record("sampling", samples.sampling_seconds)
-        return samples.motions
+        return tuple(put_on_floor(motion) for motion in samples.motions)
 
     def _choose(
         self, motions: tuple[Motion, ...], request: MotionRequest, robot: Robot, watch: _Stages

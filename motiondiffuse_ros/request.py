@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -114,7 +115,9 @@ class MotionRequest:
                 raise RequestError(f"segment {i + 1}: {', '.join(sorted(missing))} missing")
             parts = row.get("parts") or ()
             if isinstance(parts, str) or not all(isinstance(p, str) for p in parts):
-                raise RequestError(f"segment {i + 1}: 'parts' must be a list of names, got {parts!r}")
+                raise RequestError(
+                    f"segment {i + 1}: 'parts' must be a list of names, got {parts!r}"
+                )
             segments.append(
                 Segment(
                     row["text"],
@@ -232,7 +235,7 @@ def _validate_overlaps(segments: tuple[Segment, ...], blend: float) -> None:
             if (track in s.parts if track else not s.parts)
         ]
         on_track.sort()
-        for (_, end, a), (start, _, b) in zip(on_track, on_track[1:], strict=False):
+        for (_, end, a), (start, _, b) in pairwise(on_track):
             if end - start > blend + 1e-9:
                 raise RequestError(
                     f"segments {a} and {b} overlap by {end - start:g} s on "
@@ -252,7 +255,9 @@ def _validate_whole(name: str, value: Any, low: int, high: int) -> None:
     if value is None:
         return
     if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-        raise RequestError(f"request: {name} must be a whole number from {low} to {high}, got {value}")
+        raise RequestError(
+            f"request: {name} must be a whole number from {low} to {high}, got {value}"
+        )
 
 
 def _check_fields(cls: type, data: Any, where: str) -> None:

@@ -1,1 +1,48 @@
-"""Makes `synthetic` (motions made of sines) importable from every test folder."""
+"""Fixtures for every test; being here also makes `synthetic` importable from every folder."""
+
+from __future__ import annotations
+
+import os
+import tarfile
+from pathlib import Path
+
+import pytest
+
+REAL_CLIPS = {
+    "cmu": ("02_01", "09_01", "13_11", "16_21", "111_17", "141_16"),
+    "bandai-namco": (
+        "dataset-1_bow_active_001",
+        "dataset-1_walk-left_normal_001",
+        "dataset-2_raise-up-left-hand_normal_001",
+        "dataset-2_run_normal_001",
+        "dataset-2_wave-right-hand_normal_001",
+        "dataset-2_walk-turn-right_normal_001",
+    ),
+}
+
+
+@pytest.fixture(scope="session")
+def real_clips(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a few real BVH clips: cmu/ and bandai-namco/."""
+    checkout = Path(__file__).resolve().parents[1]
+    data = Path(os.environ.get("MOTIONDIFFUSE_DATA", checkout.parent / "shared" / "data"))
+    if not (data / "cmu.tar.xz").is_file():
+        pytest.skip(f"no motion capture at {data} (set MOTIONDIFFUSE_DATA)")
+    folder = tmp_path_factory.mktemp("clips")
+    for name, clips in REAL_CLIPS.items():
+        wanted = {f"{name}/{clip}.bvh" for clip in clips}
+        with tarfile.open(data / f"{name}.tar.xz", "r|xz") as archive:
+            for member in archive:
+                if member.name in wanted:
+                    archive.extract(member, folder, filter="data")
+                    wanted.discard(member.name)
+                if not wanted:
+                    break
+        assert not wanted, f"{wanted} are not in {name}.tar.xz"
+    return folder
+
+
+@pytest.fixture(scope="session")
+def real_paths(real_clips: Path) -> list[Path]:
+    """The files of `real_clips`."""
+    return sorted(real_clips.rglob("*.bvh"))

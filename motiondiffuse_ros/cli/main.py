@@ -55,10 +55,20 @@ def _usage() -> str:
     width = max(map(len, COMMANDS))
     rows = [f"  {name:<{width}}  {summary}" for name, (summary, _, _) in COMMANDS.items()]
     return "\n".join(
-        ["usage: motiondiffuse COMMAND ...", "", *rows, "", "motiondiffuse COMMAND --help says more"]
+        [
+            "usage: motiondiffuse COMMAND ...",
+            "",
+            *rows,
+            "",
+            "motiondiffuse COMMAND --help says more",
+        ]
     )
 
 
 def _fail(message: str, code: int) -> int:
     print(f"motiondiffuse: {message}", file=sys.stderr)
     return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

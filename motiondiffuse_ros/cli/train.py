@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -90,6 +91,9 @@ def main(arguments: Sequence[str]) -> int:
                 f"{p.windows_per_second:.0f} windows/s",
             )
 
+        # the shell lets background jobs ignore SIGINT; both stop the run with its state saved
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(stop, signal.default_int_handler)
         trainer.run(show)
     console.print(f"written to {options.out}")
     return 0

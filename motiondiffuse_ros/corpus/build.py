@@ -113,9 +113,7 @@ def build_corpus(
     return Corpus(clips, features, statistics, representation, config.fps, dict(dropped))
 
 
-def _import_all(
-    jobs: Sequence[_Job], config: BuildConfig
-) -> Iterator[tuple[_Job, Array | str]]:
+def _import_all(jobs: Sequence[_Job], config: BuildConfig) -> Iterator[tuple[_Job, Array | str]]:
     work = partial(_import, fps=config.fps, quality=config.quality)
     if config.workers <= 1:
         yield from zip(jobs, map(work, jobs), strict=True)

@@ -26,8 +26,8 @@ _MIRROR_PATTERN = re.compile(
     r"(?<![\w-])(" + "|".join(sorted(map(re.escape, _MIRROR), key=len, reverse=True)) + r")(?!\w)",
     re.IGNORECASE,
 )
-# "right" that is not a side: "right away", "right angle", "all right"
-_NOT_A_SIDE = re.compile(r"\b(right (?:away|angle|angles|now|after|before|there)|all right)\b", re.I)
+# "right" that is not a side
+_NOT_A_SIDE = re.compile(r"\b(right (?:away|angles?|now)|all right)\b", re.IGNORECASE)
 
 
 def mirror_caption(text: str) -> str:

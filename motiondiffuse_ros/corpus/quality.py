@@ -37,9 +37,7 @@ class QualityConfig:
             )
 
 
-def reason_to_drop(
-    motion: Motion, captions: tuple[str, ...], config: QualityConfig
-) -> str | None:
+def reason_to_drop(motion: Motion, captions: tuple[str, ...], config: QualityConfig) -> str | None:
     """Return why a clip should be dropped, or None if it should be kept."""
     if not captions:
         return "no caption"

@@ -1,9 +1,9 @@
 """The corpus folder: what `corpus build` writes and training and evaluation read.
 
-    corpus.json              format, representation, fps, clips (name, dataset, split, frames,
-                             captions), what was dropped and why
-    features.safetensors     `features` [sum of frames, D] float32, clips one after the other
-    statistics.safetensors   mean and std over the training split
+corpus.json              format, representation, fps, clips (name, dataset, split, frames,
+                         captions), what was dropped and why
+features.safetensors     `features` [sum of frames, D] float32, clips one after the other
+statistics.safetensors   mean and std over the training split
 """
 
 from __future__ import annotations
@@ -110,7 +110,9 @@ class Corpus:
         try:
             manifest = json.loads(path.read_text(encoding="utf-8"))
             if manifest["format"] != FORMAT:
-                raise CorpusError(f"{path}: format {manifest['format']}, this version reads {FORMAT}")
+                raise CorpusError(
+                    f"{path}: format {manifest['format']}, this version reads {FORMAT}"
+                )
             clips = tuple(
                 Clip(**{**c, "captions": tuple(c["captions"])}) for c in manifest["clips"]
             )
@@ -119,17 +121,20 @@ class Corpus:
             fps, dropped = float(manifest["fps"]), dict(manifest["dropped"])
         except (OSError, ValueError, KeyError, TypeError, SafetensorError) as error:
             raise CorpusError(
-                f"{folder}: not a corpus folder ({error}); make one with `motiondiffuse corpus build`"
+                f"{folder}: not a corpus folder ({error}); make one with "
+                "`motiondiffuse corpus build`"
             ) from error
         if len(features) != sum(c.frames for c in clips):
-            raise CorpusError(f"{folder}: features.safetensors does not fit corpus.json; build again")
+            raise CorpusError(
+                f"{folder}: features.safetensors does not fit corpus.json; build again"
+            )
         statistics = Statistics.load(Path(folder) / "statistics.safetensors")
         return cls(clips, features, statistics, representation, fps, dropped)
 
 
-def pack_clips(entries: Sequence[tuple[str, str, str, tuple[str, ...], Array]]) -> tuple[
-    tuple[Clip, ...], Array
-]:
+def pack_clips(
+    entries: Sequence[tuple[str, str, str, tuple[str, ...], Array]],
+) -> tuple[tuple[Clip, ...], Array]:
     """Lay clips (name, dataset, split, captions, features) one after the other."""
     clips, start = [], 0
     for name, dataset, split, captions, features in entries:

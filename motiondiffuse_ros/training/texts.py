@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
+from motiondiffuse_ros.corpus.sideways import forms_of
 from motiondiffuse_ros.corpus.store import Clip
 from motiondiffuse_ros.text import TextEncoder, TokenStates
 
@@ -42,6 +43,6 @@ class CaptionStates:
 
 
 def all_captions(clips: Iterable[Clip]) -> set[str]:
-    """Return the captions of clips, their mirror images, and the empty text."""
-    texts = {caption for clip in clips for caption in clip.captions}
+    """Return every text that training may show: captions, with sides, mirrored, and the empty."""
+    texts = {form for clip in clips for c in clip.captions for form in forms_of(c)}
     return texts | {mirror_caption(text) for text in texts} | {""}

@@ -89,7 +89,9 @@ class Trainer:
         if resume:
             self._load_state()
         elif (out / STATE_FILE).exists():
-            raise CheckpointError(f"{out} holds a run already; add --resume or choose another --out")
+            raise CheckpointError(
+                f"{out} holds a run already; add --resume or choose another --out"
+            )
         train, val = corpus.split("train"), corpus.split("val")
         self._captions = CaptionStates(all_captions((*train, *val)), encoder, on_captions)
         settings = {
@@ -134,9 +136,7 @@ class Trainer:
                     saved = self._seconds
                 if on_progress is not None:
                     on_progress(
-                        TrainProgress(
-                            self._step, self._seconds / 60.0, mean_loss, validation, rate
-                        )
+                        TrainProgress(self._step, self._seconds / 60.0, mean_loss, validation, rate)
                     )
         finally:
             self.save()
@@ -160,9 +160,9 @@ class Trainer:
         parameters = list(self._denoiser.parameters())
         self._ema.store(parameters)
         self._ema.copy_to(parameters)
-        Checkpoint(
-            self._denoiser, self._corpus.statistics, self._encoder.sha256
-        ).save_pretrained(self._out / CHECKPOINT_FOLDER)
+        Checkpoint(self._denoiser, self._corpus.statistics, self._encoder.sha256).save_pretrained(
+            self._out / CHECKPOINT_FOLDER
+        )
         self._ema.restore(parameters)
         state = {
             "denoiser_config": self._denoiser.config.to_dict(),
@@ -197,9 +197,7 @@ class Trainer:
     ) -> Losses:
         clean = batch.features
         noise = torch.randn(clean.shape, generator=generator)
-        steps = torch.randint(
-            self._denoiser.config.train_steps, (len(clean),), generator=generator
-        )
+        steps = torch.randint(self._denoiser.config.train_steps, (len(clean),), generator=generator)
         drop = torch.rand(len(clean), generator=generator) < dropout
         texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
         tokens = self._captions.batch(texts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ import numpy as np
 import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
+from motiondiffuse_ros.corpus.sideways import name_side
 from motiondiffuse_ros.corpus.store import Clip, Corpus
 
 _BUCKET_BATCHES = 8
@@ -48,9 +50,7 @@ class WindowSampler:
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
         self._mirror = mirror
         self._rng = np.random.default_rng(seed)
-        # by the square root of length: a minute-long clip holds more, but its captions say less
-        weight = np.sqrt([min(c.frames, 4 * max_frames) for c in clips])
-        self._probability = weight / weight.sum()
+        self._probability = clip_probabilities(clips, 4 * max_frames)
         self._mirror_index, self._mirror_sign = corpus.representation.mirror()
         self._step = _LENGTH_STEP if max_frames % _LENGTH_STEP == 0 else max_frames
 
@@ -67,7 +67,13 @@ class WindowSampler:
         frames = min(clip.frames, self._max_frames)
         start = int(self._rng.integers(clip.frames - frames + 1))
         mirrored = bool(self._rng.random() < self._mirror)
-        text = clip.captions[self._rng.integers(len(clip.captions))]
+        corpus = self._corpus
+        text = name_side(
+            clip.captions[self._rng.integers(len(clip.captions))],
+            corpus.of(clip)[start : start + frames],
+            corpus.representation,
+            corpus.fps,
+        )
         return _Window(clip, start, frames, mirrored, mirror_caption(text) if mirrored else text)
 
     def _collate(self, windows: Sequence[_Window]) -> WindowBatch:
@@ -83,3 +89,23 @@ class WindowSampler:
             row[: w.frames] = self._corpus.statistics.normalise(x)
         lengths = torch.tensor([w.frames for w in windows])
         return WindowBatch(torch.from_numpy(features), lengths, [w.text for w in windows])
+
+
+def clip_probabilities(clips: Sequence[Clip], max_frames: int) -> np.ndarray:
+    """Return how often each clip is drawn [len(clips)].
+
+    Data sets have equal shares. Within one a clip counts by the square root of its length (a
+    minute-long clip holds more, but its captions say less), and n clips that share their captions
+    count as the square root of n: four hundred takes of one gesture would crowd out the bow.
+    """
+    takes = Counter((clip.dataset, clip.captions) for clip in clips)
+    weight = np.array(
+        [
+            np.sqrt(min(clip.frames, max_frames) / takes[clip.dataset, clip.captions])
+            for clip in clips
+        ]
+    )
+    for dataset in {clip.dataset for clip in clips}:
+        own = np.array([clip.dataset == dataset for clip in clips])
+        weight[own] /= weight[own].sum()
+    return weight / weight.sum()

@@ -1,0 +1,79 @@
+"""Ship a training run: copy its checkpoint and draw its curves.
+
+    python -m benchmarks.weights_card --run runs/base --out motiondiffuse_ros/weights/base
+
+Writes the checkpoint's files, training.json (settings, steps, minutes, last losses) and
+curves.png. The model card and licence beside them are written by hand.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import tyro
+
+matplotlib.use("agg")
+from matplotlib import pyplot as plt
+
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to ship."""
+
+    run: Path
+    """Folder of the run."""
+    out: Path
+    """Folder of the weights."""
+
+
+def main() -> None:
+    """Copy, summarise and draw."""
+    options = tyro.cli(Options)
+    checkpoint = options.run / "checkpoint"
+    sha256 = Checkpoint.from_pretrained(checkpoint).sha256
+    options.out.mkdir(parents=True, exist_ok=True)
+    for path in checkpoint.iterdir():
+        shutil.copyfile(path, options.out / path.name)
+    rows = [json.loads(line) for line in (options.run / "log.jsonl").read_text().splitlines()]
+    training = [row for row in rows if "plain" in row]
+    validation = [row for row in rows if "validation" in row]
+    settings = json.loads((options.run / "config.json").read_text())
+    summary = {
+        **settings,
+        "steps": rows[-1]["step"],
+        "minutes": rows[-1]["minutes"],
+        "windows": rows[-1]["step"] * settings["training"]["batch_size"],
+        "training_loss_plain": float(np.mean([row["plain"] for row in training[-20:]])),
+        "validation_loss_plain": validation[-1]["validation"],
+        "model_sha256": sha256,
+    }
+    (options.out / "training.json").write_text(json.dumps(summary, indent=2) + "\n")
+    _draw(training, validation, options.out / "curves.png")
+    print(json.dumps({k: v for k, v in summary.items() if k not in ("training", "denoiser")}))
+
+
+def _draw(training: list[dict], validation: list[dict], path: Path) -> None:
+    figure, axes = plt.subplots(figsize=(7.0, 3.6), layout="constrained")
+    minutes = [row["minutes"] for row in training]
+    axes.plot(minutes, [row["plain"] for row in training], lw=0.7, alpha=0.6, label="training")
+    axes.plot(
+        [row["minutes"] for row in validation],
+        [row["validation"] for row in validation],
+        "o-",
+        label="held-out clips, averaged weights",
+    )
+    axes.set(xlabel="minutes", ylabel="mean squared error of clean features", ylim=(0.15, 1.2))
+    axes.grid(alpha=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,44 @@
+"""A denoiser small enough to run in a blink, with real layers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiffuse_ros.corpus.statistics import Statistics
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+from motiondiffuse_ros.diffusion.config import DenoiserConfig
+from motiondiffuse_ros.diffusion.denoiser import Denoiser
+
+SMALL = DenoiserConfig(
+    width=32,
+    layers=2,
+    heads=4,
+    ffn_width=32,
+    head_width=16,
+    time_width=32,
+    text_width=32,
+    text_layers=1,
+    text_ffn_width=32,
+    max_frames=64,
+)
+
+
+@pytest.fixture
+def denoiser() -> Denoiser:
+    """Random weights; the zero-initialised projections are filled so that texts matter."""
+    torch.manual_seed(0)
+    model = Denoiser(SMALL).eval()
+    with torch.no_grad():
+        for layer in model.layers:
+            for style in layer.styles:
+                style.project.weight.normal_(std=0.2)
+    return model
+
+
+@pytest.fixture
+def checkpoint(denoiser: Denoiser) -> Checkpoint:
+    """The small denoiser with unit statistics."""
+    dim = SMALL.feature_dim
+    return Checkpoint(denoiser, Statistics(np.zeros(dim, "f"), np.ones(dim, "f")), "0" * 64)

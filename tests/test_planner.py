@@ -1,0 +1,123 @@
+"""The use case with the shipped weights, at few steps."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from motiondiffuse_ros.errors import Cancelled, RequestError, RobotError
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.planner import Planner, PlannerConfig, timeline
+from motiondiffuse_ros.request import MotionRequest, Segment
+from motiondiffuse_ros.robots import broken_promises, get_robot
+
+
+@pytest.fixture(scope="module")
+def planner():
+    return Planner(PlannerConfig(steps=8, candidates=2, track=False))
+
+
+@pytest.fixture(scope="module")
+def plan(planner):
+    seen = []
+    request = MotionRequest.from_text("a person walks forward", 3.0, seed=3)
+    result = planner.plan(request, progress=seen.append)
+    return result, seen
+
+
+def test_the_trajectory_keeps_its_promises(plan):
+    result, _ = plan
+    assert broken_promises(result.trajectory, get_robot("humanoid")) == ()
+    assert len(result.trajectory.joint_names) == 63
+
+
+def test_progress_rises_through_the_stages(plan):
+    _, seen = plan
+    fractions = [p.fraction for p in seen]
+    assert fractions == sorted(fractions)
+    assert [s for i, s in enumerate(p.stage for p in seen) if i == 0 or s != seen[i - 1].stage] == [
+        "text",
+        "sampling",
+        "physics",
+        "retargeting",
+    ]
+    assert fractions[-1] == pytest.approx(1.0)
+
+
+def test_the_same_seed_gives_the_same_motion(planner, plan):
+    result, _ = plan
+    again = planner.plan(result.request)
+    np.testing.assert_array_equal(again.motion.rotations, result.motion.rotations)
+    np.testing.assert_array_equal(again.trajectory.positions, result.trajectory.positions)
+
+
+def test_a_drawn_seed_is_recorded_and_reproduces(planner):
+    first = planner.plan(MotionRequest.from_text("a person bows", 2.0))
+    again = planner.plan(MotionRequest.from_text("a person bows", 2.0, seed=first.seed))
+    np.testing.assert_array_equal(again.motion.root, first.motion.root)
+
+
+def test_files_follow_the_contract(plan, tmp_path):
+    result, _ = plan
+    result.save(tmp_path)
+    saved = json.loads((tmp_path / "plan.json").read_text())
+    assert saved["seed"] == 3
+    assert len(saved["weights_sha256"]) == 64
+    assert set(saved["timings_s"]) == {"text", "sampling", "physics", "retargeting", "total"}
+    assert json.loads((tmp_path / "report.json").read_text()) == saved["report"]
+    assert MotionRequest.from_dict(saved["request"]) == result.request
+    motion = Motion.load_npz(tmp_path / "motion.npz")
+    np.testing.assert_allclose(motion.root[0, :2], 0.0, atol=1e-6)
+    assert abs(motion.heading[0]) < 1e-3
+    with (tmp_path / "trajectory.csv").open() as file:
+        rows = list(csv.reader(file))
+    names = result.trajectory.joint_names
+    assert rows[0] == ["time", *(f"{n}_{k}" for n in names for k in ("position", "velocity"))]
+    assert len(rows) == 1 + len(result.trajectory.times)
+
+
+def test_segments_and_parts_become_one_plan_with_a_report_each(planner):
+    request = MotionRequest(
+        (
+            Segment("a person walks forward", 0.0, 2.0),
+            Segment("a person stands still", 2.0, 4.0),
+            Segment("a person waves with the right hand", 1.0, 3.0, ("right_arm",)),
+        ),
+        seed=0,
+    )
+    result = planner.plan(request)
+    assert result.motion.duration == pytest.approx(4.0)
+    assert [s.text for s in result.report.segments] == [s.text for s in request.segments]
+
+
+def test_long_motions_go_beyond_the_window(planner):
+    request = MotionRequest.from_text("a person walks forward", 25.0, seed=0, candidates=1, steps=3)
+    assert planner.plan(request).motion.duration == pytest.approx(25.0)
+
+
+def test_cancel_stops_the_sampler(planner):
+    seen = []
+    with pytest.raises(Cancelled):
+        planner.plan(
+            MotionRequest.from_text("a person walks", 3.0, seed=0),
+            progress=seen.append,
+            cancelled=lambda: any(p.stage == "sampling" for p in seen),
+        )
+    assert seen[-1].stage == "sampling"
+
+
+def test_bad_requests_are_refused_before_any_work(planner):
+    seen = []
+    with pytest.raises(RequestError, match="empty"):
+        planner.plan(MotionRequest.from_text(" "), progress=seen.append)
+    with pytest.raises(RobotError, match="humanoid"):
+        planner.plan(MotionRequest.from_text("walk", robot="toaster"), progress=seen.append)
+    assert seen == []
+
+
+def test_times_become_frames_with_both_ends():
+    request = MotionRequest((Segment("a", 0.0, 1.0), Segment("b", 1.0, 2.0)))
+    texts, frames = timeline(request, 20.0)
+    assert frames == 41
+    assert [(t.start, t.stop) for t in texts] == [(0, 20), (20, 41)]

@@ -1,0 +1,131 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from synthetic import standing, waving
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from motiondiffuse_ros.corpus.statistics import compute_statistics
+from motiondiffuse_ros.corpus.store import Corpus, pack_clips
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+from motiondiffuse_ros.diffusion.config import DenoiserConfig
+from motiondiffuse_ros.errors import CheckpointError, InputError
+from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.text import load_text_encoder
+from motiondiffuse_ros.training.config import TrainConfig
+from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
+from motiondiffuse_ros.training.windows import WindowSampler, clip_probabilities
+
+SMALL = DenoiserConfig(
+    width=32,
+    layers=1,
+    heads=4,
+    ffn_width=32,
+    head_width=16,
+    time_width=32,
+    text_width=32,
+    text_layers=1,
+    text_ffn_width=32,
+    max_frames=28,
+)
+CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=5, warmup_steps=1)
+
+
+@pytest.fixture(scope="module")
+def corpus():
+    state = PoseState()
+    entries = [
+        (f"{split}_{i}", "made", split, (text,), state.encode(motion))
+        for split in ("train", "val")
+        for i, (text, motion) in enumerate(
+            [("a person stands", standing(20)), ("a person waves with the right hand", waving(40))]
+        )
+    ]
+    clips, features = pack_clips(entries)
+    statistics = compute_statistics([e[4] for e in entries], state)
+    return Corpus(clips, features, statistics, state, 20.0, {})
+
+
+@pytest.fixture(scope="module")
+def encoder():
+    return load_text_encoder("minilm")
+
+
+def test_a_run_leaves_a_checkpoint_a_log_and_can_be_resumed(corpus, encoder, tmp_path):
+    trainer = Trainer(corpus, encoder, SMALL, CONFIG, tmp_path)
+    before = trainer.validate()
+    seen = []
+    trainer.run(seen.append)
+    assert trainer.validate() < before
+    assert Checkpoint.from_pretrained(tmp_path / "checkpoint").denoiser.config == SMALL
+    rows = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
+    assert any("validation" in row for row in rows)
+    events = EventAccumulator(str(tmp_path)).Reload()
+    assert "validation/plain" in events.Tags()["scalars"]
+
+    with pytest.raises(CheckpointError, match="--resume"):
+        Trainer(corpus, encoder, SMALL, CONFIG, tmp_path)
+    longer = replace(CONFIG, minutes=CONFIG.minutes + 0.02)
+    resumed = Trainer(corpus, encoder, SMALL, longer, tmp_path, resume=True)
+    again = []
+    resumed.run(again.append)
+    assert again[0].step == seen[-1].step + 1
+    assert again[0].minutes > seen[-1].minutes
+
+
+def test_resuming_nothing_or_something_broken_is_refused(corpus, encoder, tmp_path):
+    with pytest.raises(CheckpointError, match="nothing to resume"):
+        Trainer(corpus, encoder, SMALL, CONFIG, tmp_path, resume=True)
+    (tmp_path / STATE_FILE).write_bytes(b"PK broken")
+    with pytest.raises(CheckpointError, match="cannot be resumed"):
+        Trainer(corpus, encoder, SMALL, CONFIG, tmp_path, resume=True)
+
+
+def test_mirrored_windows_have_mirrored_features_and_words(corpus):
+    clip = next(c for c in corpus.clips if "right hand" in c.captions[0])
+    sampler = WindowSampler(corpus, [clip], max_frames=28, mirror=1.0, seed=0)
+    batch = next(sampler.batches(4))
+    assert set(batch.texts) == {"a person waves with the left hand"}
+    features = corpus.statistics.denormalise(batch.features[0, :28].numpy())
+    motion = corpus.representation.decode(features, 20.0)
+    moving = {s: np.ptp(motion.joint(f"{s}_wrist"), axis=0).max() for s in ("left", "right")}
+    assert moving["left"] > 10 * moving["right"]
+
+
+def test_bad_settings_are_refused():
+    with pytest.raises(InputError, match="batch_size must be positive"):
+        TrainConfig(batch_size=0).validate()
+    with pytest.raises(InputError, match="mirror must be from 0 to 1"):
+        TrainConfig(mirror=1.5).validate()
+
+
+@pytest.mark.parametrize("kind", ["sample", "epsilon", "v_prediction"])
+def test_every_prediction_type_recovers_the_clean_features(corpus, encoder, tmp_path, kind):
+    """A network that answered perfectly would have no loss, whatever it predicts."""
+    trainer = Trainer(
+        corpus, encoder, replace(SMALL, prediction_type=kind), CONFIG, tmp_path / kind
+    )
+    clean, noise = torch.randn(2, 3, 8, 269)
+    steps = torch.tensor([10, 500, 900])
+    scheduler = trainer._scheduler
+    noisy = scheduler.add_noise(clean, noise, steps)
+    answer = {
+        "sample": clean,
+        "epsilon": noise,
+        "v_prediction": scheduler.get_velocity(clean, noise, steps),
+    }[kind]
+    recovered = trainer._to_clean(answer, noisy, steps)
+    torch.testing.assert_close(recovered, clean, atol=1e-2, rtol=1e-2)
+
+
+def test_many_takes_of_one_gesture_do_not_crowd_out_the_rest(corpus):
+    clip = corpus.clips[0]
+    takes = [replace(clip, name=f"take_{i}") for i in range(100)]
+    other = replace(clip, captions=("a person bows",))
+    foreign = replace(clip, dataset="another")
+    share = clip_probabilities([*takes, other, foreign], 784)
+    np.testing.assert_allclose(share.sum(), 1.0)
+    np.testing.assert_allclose(share[-1], 0.5)  # a data set of its own
+    np.testing.assert_allclose(share[:100].sum() / share[100], 10.0)
