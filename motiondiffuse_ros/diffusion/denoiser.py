@@ -62,6 +62,10 @@ class DecoderLayer(nn.Module):
             StylizationBlock(width, config.time_width, config.dropout) for _ in range(3)
         )
 
+    def read_text(self, tokens: Tensor, mask: Tensor) -> AttentionContext:
+        """Return what the cross-attention needs of text tokens [B, L, text_width]."""
+        return self.cross_attention.context(tokens, mask)
+
     def forward(self, x: Tensor, mask: Tensor, text: AttentionContext, embedding: Tensor) -> Tensor:
         own = self.self_attention.context(x, mask)
         x = x + self.styles[0](self.self_attention(x, own), embedding)
@@ -147,6 +151,9 @@ class Denoiser(nn.Module):
         self.norm = nn.LayerNorm(width)
         self.head = ConvolutionalHead(config) if config.head_width else LinearHead(config)
 
+    def _decoder(self) -> list[DecoderLayer]:
+        return [layer for layer in self.layers if isinstance(layer, DecoderLayer)]
+
     @property
     def device(self) -> torch.device:
         """Where the weights are."""
@@ -163,7 +170,7 @@ class Denoiser(nn.Module):
         x = self.text_norm(x)
         weight = mask[..., None].to(x.dtype)
         pooled = self.text_pool((x * weight).sum(1) / weight.sum(1))
-        contexts = tuple(layer.cross_attention.context(x, mask) for layer in self.layers)
+        contexts = tuple(layer.read_text(x, mask) for layer in self._decoder())
         return Conditioning(contexts, pooled)
 
     def forward(
@@ -189,7 +196,7 @@ class Denoiser(nn.Module):
         tokens = tokens + self.positions[: tokens.shape[1]]
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
         embedding = self.time_in(step_embedding(steps, self.config.width)) + conditioning.pooled
-        for layer, context in zip(self.layers, conditioning.contexts, strict=True):
+        for layer, context in zip(self._decoder(), conditioning.contexts, strict=True):
             tokens = layer(tokens, token_mask, context, embedding)
         y = self.head(self.norm(tokens), x, frame_mask, embedding)
         return y[:, :frames].float()

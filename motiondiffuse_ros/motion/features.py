@@ -21,7 +21,7 @@ from motiondiffuse_ros.motion.frames import (
 )
 from motiondiffuse_ros.motion.motion import Motion
 from motiondiffuse_ros.motion.parts import PARTS, part_joints
-from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.rotations import Array, Indices
 from motiondiffuse_ros.motion.skeleton import CANONICAL
 
 _UP = 1  # axis index of the y-up frame
@@ -45,11 +45,11 @@ class Representation(Protocol):
         """Return the named blocks of the feature vector."""
         ...
 
-    def part_indices(self, part: str) -> Array:
+    def part_indices(self, part: str) -> Indices:
         """Return the feature indices that a body part owns."""
         ...
 
-    def mirror(self) -> tuple[Array, Array]:
+    def mirror(self) -> tuple[Indices, Array]:
         """Return (index, sign): `features[:, index] * sign` is the mirrored motion."""
         ...
 
@@ -136,7 +136,7 @@ class PoseState:
         rotations[:, 0] = rot.multiply(turn, rotations[:, 0])
         return Motion(vectors_to_z_up(root), quaternions_to_z_up(rotations), fps, CANONICAL)
 
-    def part_indices(self, part: str) -> Array:
+    def part_indices(self, part: str) -> Indices:
         """Return the indices a part owns; the root's blocks and the contacts go with the legs."""
         owned: list[int] = []
         if "pelvis" in PARTS[part]:
@@ -152,7 +152,7 @@ class PoseState:
             owned += range(start, start + 3)
         return np.array(sorted(owned))
 
-    def mirror(self) -> tuple[Array, Array]:
+    def mirror(self) -> tuple[Indices, Array]:
         """Return (index, sign) [269] such that `features[:, index] * sign` is the mirror image."""
         index = np.arange(self.dim)
         sign = np.ones(self.dim, dtype=np.float32)
@@ -161,7 +161,7 @@ class PoseState:
         # both kept columns of M R M, M = diag(-1, 1, 1)
         columns = np.array([1.0, -1.0, -1.0, -1.0, 1.0, 1.0])
 
-        def joints(name: str, order: Array, signs: Array) -> None:
+        def joints(name: str, order: Indices, signs: Array) -> None:
             s = self._groups[name]
             index[s] = s.start + (order[:, None] * len(signs) + np.arange(len(signs))).ravel()
             sign[s] = np.tile(signs, len(order))

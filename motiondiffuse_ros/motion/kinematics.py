@@ -38,11 +38,9 @@ class PoseStateKinematics:
         """
         columns = features[:, self._rotations].unflatten(-1, (-1, 2, 3)).transpose(-1, -2)
         local = roma.special_gramschmidt(columns.float())
-        world: list[Tensor | None] = [None] * local.shape[1]
-        place: list[Tensor | None] = [None] * local.shape[1]
-        world[0] = local[:, 0]
         up = torch.tensor([0.0, 1.0, 0.0])
-        place[0] = features[:, self._height].float() * up
+        world = {0: local[:, 0]}
+        place = {0: features[:, self._height].float() * up}
         for joints in self._levels:
             parents = self._parents[joints].tolist()
             turn = torch.stack([world[p] for p in parents], dim=1)
@@ -51,4 +49,4 @@ class PoseStateKinematics:
             turn = turn @ local[:, joints]
             for i, j in enumerate(joints.tolist()):
                 world[j], place[j] = turn[:, i], here[:, i]
-        return torch.stack(place[1:], dim=1)
+        return torch.stack([place[j] for j in range(1, len(place))], dim=1)

@@ -5,11 +5,14 @@ All functions broadcast over leading axes: quaternions are [..., 4], vectors [..
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
+Indices = NDArray[np.intp]
 
 
 def identity(*shape: int) -> Array:

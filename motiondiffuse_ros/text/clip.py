@@ -28,11 +28,11 @@ class Clip:
         Raises:
             TextEncoderError: If files are missing or the text width is not 512.
         """
-        from transformers import CLIPTextModel, CLIPTokenizerFast
+        from transformers import CLIPTextModel, CLIPTokenizer
 
         try:
             self.sha256 = file_sha256(Path(folder) / "model.safetensors")
-            self._tokenizer = CLIPTokenizerFast.from_pretrained(folder, local_files_only=True)
+            self._tokenizer = CLIPTokenizer.from_pretrained(folder, local_files_only=True)
             self._model = CLIPTextModel.from_pretrained(folder, local_files_only=True).eval()
         except (OSError, ValueError) as error:
             raise TextEncoderError(

@@ -23,7 +23,7 @@ def _run(*arguments, cwd):
         (["generate", ""], "the text is empty"),
         (["generate"], "either a text or --request"),
         (["generate", "walk", "--seconds", "nan"], "finite"),
-        (["generate", "walk", "--seconds", "-3"], "not after its start"),
+        (["generate", "walk", "--seconds", "-3"], "times are finite and from 0"),
         (["generate", "walk", "--seconds", "9999"], "longest motion is 600"),
         (["generate", "walk", "--robot", "toaster"], "the robots are humanoid"),
         (["generate", "walk", "--weights", "nowhere"], "checkpoint nowhere"),

@@ -43,14 +43,14 @@ def test_unknown_encoders_are_refused_with_the_known(tmp_path):
 
 def test_clip_loads_from_a_folder_in_its_layout(tmp_path):
     """With random weights of ViT-B/32's text shape: the real ones are the user's."""
-    from transformers import CLIPTextConfig, CLIPTextModel, CLIPTokenizerFast
+    from transformers import CLIPTextConfig, CLIPTextModel, CLIPTokenizer
 
     vocabulary = {"<|startoftext|>": 0, "<|endoftext|>": 1, "a</w>": 2, "w": 3, "a": 4}
     import json
 
     (tmp_path / "vocab.json").write_text(json.dumps(vocabulary))
     (tmp_path / "merges.txt").write_text("#version: 0.2\n")
-    CLIPTokenizerFast(
+    CLIPTokenizer(
         str(tmp_path / "vocab.json"), str(tmp_path / "merges.txt"), model_max_length=77
     ).save_pretrained(tmp_path)
     config = CLIPTextConfig(
