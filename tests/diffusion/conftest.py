@@ -1,28 +1,15 @@
-"""A denoiser small enough to run in a blink, with real layers."""
+"""The small denoiser, with random weights."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 import torch
+from small_denoiser import SMALL
 
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
-from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
-
-SMALL = DenoiserConfig(
-    width=32,
-    layers=2,
-    heads=4,
-    ffn_width=32,
-    head_width=16,
-    time_width=32,
-    text_width=32,
-    text_layers=1,
-    text_ffn_width=32,
-    max_frames=64,
-)
 
 
 @pytest.fixture

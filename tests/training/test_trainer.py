@@ -4,13 +4,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from small_denoiser import SMALL
 from synthetic import standing, waving
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from motiondiffuse_ros.corpus.statistics import compute_statistics
 from motiondiffuse_ros.corpus.store import Corpus, pack_clips
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
-from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.errors import CheckpointError, InputError
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.text import load_text_encoder
@@ -18,18 +18,6 @@ from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
 from motiondiffuse_ros.training.windows import WindowSampler, clip_probabilities
 
-SMALL = DenoiserConfig(
-    width=32,
-    layers=1,
-    heads=4,
-    ffn_width=32,
-    head_width=16,
-    time_width=32,
-    text_width=32,
-    text_layers=1,
-    text_ffn_width=32,
-    max_frames=28,
-)
 CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=5, warmup_steps=1)
 
 
@@ -85,10 +73,10 @@ def test_resuming_nothing_or_something_broken_is_refused(corpus, encoder, tmp_pa
 
 def test_mirrored_windows_have_mirrored_features_and_words(corpus):
     clip = next(c for c in corpus.clips if "right hand" in c.captions[0])
-    sampler = WindowSampler(corpus, [clip], max_frames=28, mirror=1.0, seed=0)
+    sampler = WindowSampler(corpus, [clip], max_frames=64, mirror=1.0, seed=0)
     batch = next(sampler.batches(4))
     assert set(batch.texts) == {"a person waves with the left hand"}
-    features = corpus.statistics.denormalise(batch.features[0, :28].numpy())
+    features = corpus.statistics.denormalise(batch.features[0, :40].numpy())
     motion = corpus.representation.decode(features, 20.0)
     moving = {s: np.ptp(motion.joint(f"{s}_wrist"), axis=0).max() for s in ("left", "right")}
     assert moving["left"] > 10 * moving["right"]
