@@ -16,16 +16,6 @@ SCHEDULERS = ("ddim", "ddpm", "dpm-solver++")
 Scheduler = DDIMScheduler | DDPMScheduler | DPMSolverMultistepScheduler
 
 
-def _schedule(config: DenoiserConfig) -> dict[str, Any]:
-    return {
-        "num_train_timesteps": config.train_steps,
-        "beta_schedule": config.beta_schedule,
-        "beta_start": config.beta_start,
-        "beta_end": config.beta_end,
-        "prediction_type": config.prediction_type,
-    }
-
-
 def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
     """Return a sampler for a denoiser's noise schedule.
 
@@ -36,14 +26,19 @@ def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
     Raises:
         RequestError: If there is no such scheduler.
     """
+    common: dict[str, Any] = {
+        "num_train_timesteps": config.train_steps,
+        "beta_schedule": config.beta_schedule,
+        "beta_start": config.beta_start,
+        "beta_end": config.beta_end,
+        "prediction_type": config.prediction_type,
+        "timestep_spacing": "trailing",
+    }
     # features are normalised, not bounded: samples are never clipped
-    common = _schedule(config)
     if name == "ddim":
-        return DDIMScheduler(**common, clip_sample=False, timestep_spacing="trailing")
+        return DDIMScheduler(**common, clip_sample=False)
     if name == "ddpm":
-        return DDPMScheduler(**common, clip_sample=False, timestep_spacing="trailing")
+        return DDPMScheduler(**common, clip_sample=False)
     if name == "dpm-solver++":
-        return DPMSolverMultistepScheduler(
-            **common, algorithm_type="dpmsolver++", timestep_spacing="trailing"
-        )
+        return DPMSolverMultistepScheduler(**common, algorithm_type="dpmsolver++")
     raise RequestError(f"unknown scheduler '{name}'; the schedulers are {', '.join(SCHEDULERS)}")

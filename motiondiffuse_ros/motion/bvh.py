@@ -16,6 +16,7 @@ from motiondiffuse_ros.motion.frames import (
 )
 from motiondiffuse_ros.motion.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import Skeleton
 
 _AXES = {"X": 0, "Y": 1, "Z": 2}
 _END_SITE = "End Site"
@@ -46,11 +47,7 @@ class BvhClip:
     @cached_property
     def global_rotations(self) -> Array:
         """World rotations [T, J, 4]."""
-        out = np.empty_like(self.rotations)
-        for j, p in enumerate(self.parents):
-            local = self.rotations[:, j]
-            out[:, j] = local if p < 0 else rot.multiply(out[:, p], local)
-        return out
+        return Skeleton(self.names, self.parents, self.offsets).global_rotations(self.rotations)
 
     @cached_property
     def positions(self) -> Array:
