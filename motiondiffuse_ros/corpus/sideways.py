@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-
+from motiondiffuse_ros.corpus.travel import Travel
 from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.motion.rotations import Array
 
 _SIDEWAYS = re.compile(r"\b(sideways?|side ?-?steps?|to the side|lateral)\b", re.IGNORECASE)
 _SIDE = re.compile(r"\b(left|right|side to side|both)", re.IGNORECASE)
-_MIN_DISTANCE = 0.4
-_MIN_RATIO = 2.0
 
 
 def name_side(text: str, features: Array, representation: Representation, fps: float) -> str:
@@ -31,11 +28,8 @@ def name_side(text: str, features: Array, representation: Representation, fps: f
     forms = forms_of(text)
     if len(forms) == 1:
         return text
-    velocity = features[:, representation.groups()["root_velocity"]]  # x is left, z ahead
-    left, ahead = velocity.sum(axis=0) / fps
-    wandering = np.abs(velocity[:, 0]).sum() / fps
-    certain = abs(left) > max(_MIN_DISTANCE, _MIN_RATIO * abs(ahead), 0.8 * wandering)
-    return forms[1 if left > 0 else 2] if certain else text
+    side = Travel.of(features, representation, fps).side
+    return forms[0] if side == 0 else forms[1 if side > 0 else 2]
 
 
 def forms_of(text: str) -> tuple[str, ...]:

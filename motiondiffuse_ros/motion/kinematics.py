@@ -7,17 +7,23 @@ import roma
 import torch
 from torch import Tensor
 
+from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.frames import vectors_to_y_up
 from motiondiffuse_ros.motion.skeleton import CANONICAL
 
 
+CONTACT_POSITIONS = tuple(CANONICAL.index(name) - 1 for name in CONTACT_JOINTS)
+"""Where the contact joints are among the joints below the root."""
+
+
 class PoseStateKinematics:
-    """Joint positions that a pose state's rotations and root height imply."""
+    """Joint positions and velocities that a pose state's decoded blocks imply."""
 
     def __init__(self) -> None:
         groups = PoseState().groups()
         self._rotations, self._height = groups["rotations"], groups["root_height"]
+        self._yaw_velocity, self._root_velocity = groups["yaw_velocity"], groups["root_velocity"]
         offsets = vectors_to_y_up(CANONICAL.offsets).astype(np.float32)
         self._offsets = torch.from_numpy(offsets)
         # joints of one depth are computed together: eight small products instead of 21
@@ -50,3 +56,20 @@ class PoseStateKinematics:
             for i, j in enumerate(joints.tolist()):
                 world[j], place[j] = turn[:, i], here[:, i]
         return torch.stack([place[j] for j in range(1, len(place))], dim=1)
+
+    def velocities(self, features: Tensor, here: Tensor, there: Tensor, fps: float) -> Tensor:
+        """Return the joints' velocities [N, 21, 3] over the floor, m/s, in the heading frame.
+
+        Args:
+            features: Denormalised pose states [N, 269] of the first of two frames.
+            here: `positions` of that frame.
+            there: `positions` of the next one, in its own heading frame.
+            fps: Frame rate, Hz.
+        """
+        turn = features[:, self._yaw_velocity].float() / fps
+        sine, cosine = turn.sin(), turn.cos()
+        x, y, z = there.unbind(-1)
+        turned = torch.stack([cosine * x + sine * z, y, cosine * z - sine * x], dim=-1)
+        root = features[:, self._root_velocity].float()
+        moved = torch.stack([root[:, 0], torch.zeros_like(root[:, 0]), root[:, 1]], dim=-1)
+        return (turned - here) * fps + moved[:, None]

@@ -21,8 +21,11 @@ class TrainConfig:
         gradient_clip: Largest gradient norm.
         condition_dropout: Share of windows trained with the empty text, for guidance.
         mirror: Share of windows that are mirrored, with left and right swapped in the text.
+        statements: Share of windows whose text is what their kinematics state for certain.
         difference_weight: Weight of the loss on frame-to-frame differences.
-        position_weight: Weight of the loss on forward kinematics.
+        position_weight: Weight of the loss on joint positions by forward kinematics.
+        velocity_weight: Weight of the loss on joint velocities by forward kinematics.
+        slide_weight: Weight of the loss on feet that move while in contact.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.
         seed: Of initial weights, batches and noise.
@@ -38,8 +41,11 @@ class TrainConfig:
     gradient_clip: float = 1.0
     condition_dropout: float = 0.1
     mirror: float = 0.5
+    statements: float = 0.2
     difference_weight: float = 3.0
     position_weight: float = 0.5
+    velocity_weight: float = 0.3
+    slide_weight: float = 0.3
     ema_decay: float = 0.999
     bf16: bool = True
     seed: int = 0
@@ -52,7 +58,7 @@ class TrainConfig:
         for name in positive:
             if not getattr(self, name) > 0:
                 raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
-        for name in ("condition_dropout", "mirror", "ema_decay"):
+        for name in ("condition_dropout", "mirror", "statements", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")
 

@@ -10,7 +10,7 @@ from torch import Tensor
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.attention import pad_mask
 from motiondiffuse_ros.motion.features import Representation
-from motiondiffuse_ros.motion.kinematics import PoseStateKinematics
+from motiondiffuse_ros.motion.kinematics import CONTACT_POSITIONS, PoseStateKinematics
 
 # Share of each block in the loss. Only the root's blocks and the rotations are decoded; evenly by
 # number the root's four would drown in 269.
@@ -23,7 +23,7 @@ _SHARES = {
     "velocities": 0.15,
     "contacts": 0.05,
 }
-_POSITION_FRAMES = 4  # forward kinematics is costly: every fourth frame carries its loss
+_PAIR_STEP = 8  # forward kinematics is costly: a pair of neighbours in every eight frames has it
 
 
 @dataclass(frozen=True)
@@ -34,27 +34,37 @@ class Losses:
         features: Weighted squared error of the clean features.
         difference: The same of frame-to-frame differences.
         position: Squared error of joint positions by forward kinematics, normalised.
+        velocity: Squared error of joint velocities over the floor, by forward kinematics and the
+            root's own velocity, normalised. It ties the steps to the way the root goes.
+        slide: Error of the feet's velocities while they are in contact, m/s; linear, since small
+            slides are what is seen.
         plain: Unweighted squared error, for comparison between runs.
     """
 
     features: Tensor
     difference: Tensor
     position: Tensor
+    velocity: Tensor
+    slide: Tensor
     plain: Tensor
 
 
 class MotionLoss:
     """Compares predicted with true clean features."""
 
-    def __init__(self, representation: Representation, statistics: Statistics) -> None:
+    def __init__(self, representation: Representation, statistics: Statistics, fps: float) -> None:
+        groups = representation.groups()
         weight = torch.zeros(representation.dim)
-        for name, block in representation.groups().items():
+        for name, block in groups.items():
             weight[block] = _SHARES[name] / (block.stop - block.start)
         self._weight = weight
         self._mean = torch.from_numpy(statistics.mean)
         self._std = torch.from_numpy(statistics.std)
-        self._positions = representation.groups()["positions"]
+        self._positions, self._contacts = groups["positions"], groups["contacts"]
+        velocities = groups["velocities"]
+        self._velocities = slice(velocities.start + 3, velocities.stop)  # the root's are no joint's
         self._kinematics = PoseStateKinematics()
+        self._fps = fps
 
     def __call__(self, predicted: Tensor, true: Tensor, lengths: Tensor, phase: int) -> Losses:
         """Return the losses.
@@ -63,7 +73,7 @@ class MotionLoss:
             predicted: Normalised clean features [B, T, D].
             true: The same, of the data.
             lengths: Frames that count [B].
-            phase: Which of every `_POSITION_FRAMES` frames carry the position loss.
+            phase: Which of every `_PAIR_STEP` frames carry the losses by forward kinematics.
         """
         mask = pad_mask(lengths, true.shape[1])
         squared = (predicted - true).square()
@@ -71,13 +81,26 @@ class MotionLoss:
         plain = squared.detach().mean(-1)[mask].mean()
         step = (predicted[:, 1:] - predicted[:, :-1]) - (true[:, 1:] - true[:, :-1])
         difference = (step.square() @ self._weight)[mask[:, 1:]].mean()
-        return Losses(features, difference, self._position(predicted, true, mask, phase), plain)
+        return Losses(features, difference, *self._kinematic(predicted, true, mask, phase), plain)
 
-    def _position(self, predicted: Tensor, true: Tensor, mask: Tensor, phase: int) -> Tensor:
-        chosen = (slice(None), slice(phase % _POSITION_FRAMES, None, _POSITION_FRAMES))
-        keep = mask[chosen]
-        rows = predicted[chosen][keep] * self._std + self._mean
-        target = true[chosen][keep][:, self._positions]
-        positions = self._kinematics.positions(rows).flatten(1)
-        normalised = (positions - self._mean[self._positions]) / self._std[self._positions]
-        return (normalised - target).square().mean()
+    def _kinematic(
+        self, predicted: Tensor, true: Tensor, mask: Tensor, phase: int
+    ) -> tuple[Tensor, Tensor, Tensor]:
+        first = torch.arange(phase % _PAIR_STEP, true.shape[1] - 1, _PAIR_STEP)
+        keep = mask[:, first + 1]
+        pairs = [predicted[:, i][keep] * self._std + self._mean for i in (first, first + 1)]
+        here, there = self._kinematics.positions(torch.cat(pairs)).chunk(2)
+        velocities = self._kinematics.velocities(pairs[0], here, there, self._fps)
+        now, then = true[:, first][keep], true[:, first + 1][keep]
+        position = 0.5 * (
+            self._error(here, now, self._positions) + self._error(there, then, self._positions)
+        )
+        truth = (now * self._std + self._mean)[:, self._velocities].unflatten(1, (-1, 3))
+        contacts = (now * self._std + self._mean)[:, self._contacts] > 0.5
+        feet = (velocities - truth)[:, CONTACT_POSITIONS].norm(dim=-1)
+        slide = (feet * contacts).sum() / contacts.sum().clamp(min=1)
+        return position, self._error(velocities, now, self._velocities), slide
+
+    def _error(self, values: Tensor, true: Tensor, block: slice) -> Tensor:
+        normalised = (values.flatten(1) - self._mean[block]) / self._std[block]
+        return (normalised - true[:, block]).square().mean()

@@ -8,6 +8,7 @@ import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import forms_of
+from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.store import Clip
 from motiondiffuse_ros.text import TextEncoder, TokenStates
 
@@ -43,6 +44,10 @@ class CaptionStates:
 
 
 def all_captions(clips: Iterable[Clip]) -> set[str]:
-    """Return every text that training may show: captions, with sides, mirrored, and the empty."""
+    """Return every text that training may show.
+
+    Captions, with their sides, statements, the mirror images of all and the empty text.
+    """
     texts = {form for clip in clips for c in clip.captions for form in forms_of(c)}
+    texts |= set(all_statements())
     return texts | {mirror_caption(text) for text in texts} | {""}

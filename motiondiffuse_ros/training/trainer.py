@@ -75,7 +75,7 @@ class Trainer:
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)
         self._optimizer = torch.optim.AdamW(
-            self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99)
+            self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99), fused=True
         )
         self._ema = EMAModel(
             self._denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
@@ -83,7 +83,7 @@ class Trainer:
         scheduler = make_scheduler("ddpm", denoiser_config)
         assert isinstance(scheduler, DDPMScheduler)
         self._scheduler = scheduler
-        self._loss = MotionLoss(corpus.representation, corpus.statistics)
+        self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
         self._step, self._seconds = 0, 0.0
         out.mkdir(parents=True, exist_ok=True)
         if resume:
@@ -99,9 +99,9 @@ class Trainer:
             "mirror": config.mirror,
         }
         self._windows = WindowSampler(
-            corpus, train, seed=config.seed + self._step, **settings
+            corpus, train, statements=config.statements, seed=config.seed + self._step, **settings
         ).batches(config.batch_size)
-        held_out = WindowSampler(corpus, val, seed=_VALIDATION_SEED, **settings)
+        held_out = WindowSampler(corpus, val, statements=0.0, seed=_VALIDATION_SEED, **settings)
         batches = held_out.batches(config.batch_size)
         self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]
         self._record_settings()
@@ -184,6 +184,8 @@ class Trainer:
             losses.features
             + self._config.difference_weight * losses.difference
             + self._config.position_weight * losses.position
+            + self._config.velocity_weight * losses.velocity
+            + self._config.slide_weight * losses.slide
         )
         self._optimizer.zero_grad(set_to_none=True)
         total.backward()

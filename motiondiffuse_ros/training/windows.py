@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,10 +11,12 @@ import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import name_side
+from motiondiffuse_ros.corpus.statements import state
 from motiondiffuse_ros.corpus.store import Clip, Corpus
 
 _BUCKET_BATCHES = 8
 _LENGTH_STEP = 28
+_STATED_SECONDS = (3.0, 5.0, 8.0)
 
 
 @dataclass(frozen=True)
@@ -37,20 +39,31 @@ class _Window:
     clip: Clip
     start: int
     frames: int
-    mirrored: bool
-    text: str
+    texts: tuple[str, ...]
 
 
 class WindowSampler:
-    """Draws windows without end, batches of like length together."""
+    """Draws windows without end, batches of like length together.
+
+    Most come with a caption of their clip, a share of `statements` with what their kinematics
+    state for certain; of those each kind of statement is as frequent as any other.
+    """
 
     def __init__(
-        self, corpus: Corpus, clips: Sequence[Clip], *, max_frames: int, mirror: float, seed: int
+        self,
+        corpus: Corpus,
+        clips: Sequence[Clip],
+        *,
+        max_frames: int,
+        mirror: float,
+        statements: float,
+        seed: int,
     ) -> None:
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
-        self._mirror = mirror
+        self._mirror, self._statements = mirror, statements
         self._rng = np.random.default_rng(seed)
         self._probability = clip_probabilities(clips, 4 * max_frames)
+        self._stated = _stated_windows(corpus, clips, max_frames) if statements > 0 else []
         self._mirror_index, self._mirror_sign = corpus.representation.mirror()
         self._step = _LENGTH_STEP if max_frames % _LENGTH_STEP == 0 else max_frames
 
@@ -58,37 +71,66 @@ class WindowSampler:
         """Yield batches for ever."""
         while True:
             windows = [self._draw() for _ in range(batch_size * _BUCKET_BATCHES)]
-            windows.sort(key=lambda w: w.frames)
+            windows.sort(key=lambda drawn: drawn[0].frames)
             for b in self._rng.permutation(_BUCKET_BATCHES):
                 yield self._collate(windows[b * batch_size : (b + 1) * batch_size])
 
-    def _draw(self) -> _Window:
+    def _draw(self) -> tuple[_Window, str, bool]:
+        stated = self._stated and self._rng.random() < self._statements
+        window = self._draw_stated() if stated else self._draw_captioned()
+        text = window.texts[self._rng.integers(len(window.texts))]
+        mirrored = bool(self._rng.random() < self._mirror)
+        return window, mirror_caption(text) if mirrored else text, mirrored
+
+    def _draw_captioned(self) -> _Window:
         clip = self._clips[self._rng.choice(len(self._clips), p=self._probability)]
         frames = min(clip.frames, self._max_frames)
         start = int(self._rng.integers(clip.frames - frames + 1))
-        mirrored = bool(self._rng.random() < self._mirror)
         corpus = self._corpus
-        text = name_side(
-            clip.captions[self._rng.integers(len(clip.captions))],
-            corpus.of(clip)[start : start + frames],
-            corpus.representation,
-            corpus.fps,
+        features = corpus.of(clip)[start : start + frames]
+        texts = (
+            name_side(text, features, corpus.representation, corpus.fps) for text in clip.captions
         )
-        return _Window(clip, start, frames, mirrored, mirror_caption(text) if mirrored else text)
+        return _Window(clip, start, frames, tuple(texts))
 
-    def _collate(self, windows: Sequence[_Window]) -> WindowBatch:
+    def _draw_stated(self) -> _Window:
+        of_kind = self._stated[self._rng.integers(len(self._stated))]
+        of_clip = of_kind[self._rng.integers(len(of_kind))]
+        return of_clip[self._rng.integers(len(of_clip))]
+
+    def _collate(self, drawn: Sequence[tuple[_Window, str, bool]]) -> WindowBatch:
         # few distinct lengths, so that compiled kernels are reused
-        longest = -(-max(w.frames for w in windows) // self._step) * self._step
+        longest = -(-max(w.frames for w, _, _ in drawn) // self._step) * self._step
         features = np.zeros(
-            (len(windows), longest, self._corpus.representation.dim), dtype=np.float32
+            (len(drawn), longest, self._corpus.representation.dim), dtype=np.float32
         )
-        for row, w in zip(features, windows, strict=True):
+        for row, (w, _, mirrored) in zip(features, drawn, strict=True):
             x = self._corpus.of(w.clip)[w.start : w.start + w.frames]
-            if w.mirrored:
+            if mirrored:
                 x = x[:, self._mirror_index] * self._mirror_sign
             row[: w.frames] = self._corpus.statistics.normalise(x)
-        lengths = torch.tensor([w.frames for w in windows])
-        return WindowBatch(torch.from_numpy(features), lengths, [w.text for w in windows])
+        lengths = torch.tensor([w.frames for w, _, _ in drawn])
+        return WindowBatch(torch.from_numpy(features), lengths, [text for _, text, _ in drawn])
+
+
+def _stated_windows(
+    corpus: Corpus, clips: Sequence[Clip], max_frames: int
+) -> list[list[list[_Window]]]:
+    """Return windows whose kinematics state something, by kind of statement and then by clip."""
+    found: dict[str, list[list[_Window]]] = defaultdict(list)
+    stride = round(corpus.fps)
+    for clip in clips:
+        features = corpus.of(clip)
+        sizes = {min(round(s * corpus.fps), clip.frames, max_frames) for s in _STATED_SECONDS}
+        own: dict[str, list[_Window]] = defaultdict(list)
+        for frames in sorted(sizes):
+            for start in range(0, clip.frames - frames + 1, stride):
+                window = features[start : start + frames]
+                for statement in state(window, corpus.representation, corpus.fps):
+                    own[statement.kind].append(_Window(clip, start, frames, statement.texts))
+        for kind, windows in own.items():
+            found[kind].append(windows)
+    return [found[kind] for kind in sorted(found)]
 
 
 def clip_probabilities(clips: Sequence[Clip], max_frames: int) -> np.ndarray:

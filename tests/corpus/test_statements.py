@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+from synthetic import moved, standing
+
+from motiondiffuse_ros.corpus.captions import mirror_caption
+from motiondiffuse_ros.corpus.importer import load_motion
+from motiondiffuse_ros.corpus.statements import all_statements, state
+from motiondiffuse_ros.motion.features import PoseState
+
+STATE = PoseState()
+FPS = 20.0
+
+
+def _statements(features):
+    return {s.kind: s.texts for s in state(features, STATE, FPS)}
+
+
+def _of(paths, name):
+    path = next(p for p in paths if p.stem == name)
+    return STATE.encode(load_motion(path).resample(FPS))
+
+
+@pytest.mark.parametrize(
+    ("clip", "kind", "word"),
+    [
+        ("02_01", "walk", "walks"),
+        ("09_01", "run", "runs"),
+        ("dataset-2_run_normal_001", "run", "runs"),
+        ("dataset-2_raise-up-left-hand_normal_001", "one hand up", "left"),
+        ("dataset-2_wave-right-hand_normal_001", "one hand up", "right"),
+        ("dataset-2_walk-turn-right_normal_001", "curve", "right"),
+    ],
+)
+def test_real_clips_are_stated_as_what_they_are(real_paths, clip, kind, word):
+    features = _of(real_paths, clip)
+    texts = _statements(features)[kind]
+    assert all(word in text for text in texts)
+
+
+def test_the_mirror_image_of_a_window_states_the_mirrored_text(real_paths):
+    index, sign = STATE.mirror()
+    for path in real_paths:
+        features = STATE.encode(load_motion(path).resample(FPS))
+        mirrored = _statements(features[:, index] * sign)
+        expected = {
+            kind: tuple(map(mirror_caption, texts)) for kind, texts in _statements(features).items()
+        }
+        assert mirrored == expected, path
+
+
+def test_a_body_that_glides_without_stepping_is_not_said_to_walk():
+    still = standing(81)
+    times = np.arange(still.frames)[:, None] / still.fps
+    assert not _statements(STATE.encode(moved(still, times * [1.0, 0.0, 0.0])))
+
+
+def test_a_body_at_rest_is_said_to_stand_still():
+    assert set(_statements(STATE.encode(standing(81)))) == {"still"}
+
+
+def test_every_sentence_can_be_given_and_every_given_one_is_known(real_paths):
+    sentences = set(all_statements())
+    assert {mirror_caption(text) for text in sentences} == sentences
+    for path in real_paths:
+        for texts in _statements(STATE.encode(load_motion(path).resample(FPS))).values():
+            assert set(texts) <= sentences
