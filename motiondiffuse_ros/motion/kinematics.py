@@ -12,7 +12,6 @@ from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.frames import vectors_to_y_up
 from motiondiffuse_ros.motion.skeleton import CANONICAL
 
-
 CONTACT_POSITIONS = tuple(CANONICAL.index(name) - 1 for name in CONTACT_JOINTS)
 """Where the contact joints are among the joints below the root."""
 
