@@ -14,6 +14,8 @@ COMMANDS: dict[str, tuple[str, str, str]] = {
     "check": ("physics verdict on a BVH or npz file", "check", "main"),
     "corpus": ("build a training corpus; fetch NAME tells where originals are", "corpus", "main"),
     "train": ("train a denoiser on a corpus", "train", "main"),
+    "evaluate": ("the paper's tables for a set of weights", "evaluate", "main"),
+    "train-evaluator": ("train the ruler that evaluate uses", "train_evaluator", "main"),
     "node": ("the ROS 2 lifecycle node", "node", "node_main"),
     "sim": ("a simulated robot that follows the node", "sim", "run_sim"),
     "demo": ("node, sim and a text goal as real processes", "demo", "main"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,12 +13,11 @@ from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.errors import CheckpointError
-from motiondiffuse_ros.hashing import file_sha256
+from motiondiffuse_ros.manifest import CONFIG_FILE, read_manifest, write_manifest
 
 FORMAT = 1
 MODEL_FILE = "model.safetensors"
 STATISTICS_FILE = "statistics.safetensors"
-CONFIG_FILE = "config.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +49,8 @@ class Checkpoint:
             "format": FORMAT,
             "denoiser": self.denoiser.config.to_dict(),
             "text_encoder_sha256": self.text_encoder_sha256,
-            "files": {name: file_sha256(folder / name) for name in (MODEL_FILE, STATISTICS_FILE)},
         }
-        (folder / CONFIG_FILE).write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+        write_manifest(folder, config, (MODEL_FILE, STATISTICS_FILE))
 
     @classmethod
     def from_pretrained(cls, folder: Path) -> Checkpoint:
@@ -63,53 +60,24 @@ class Checkpoint:
             CheckpointError: If a file is missing, truncated, altered or of another format.
         """
         folder = Path(folder)
-        config = _read_config(folder)
-        hashes = {}
-        for name, expected in config["files"].items():
-            try:
-                hashes[name] = file_sha256(folder / name)
-            except OSError as error:
-                raise CheckpointError(f"checkpoint {folder}: {name} is missing") from error
-            if hashes[name] != expected:
-                raise CheckpointError(
-                    f"checkpoint {folder}: {name} is truncated or altered "
-                    f"(SHA-256 {hashes[name][:12]}…, config.json says {expected[:12]}…)"
-                )
+        config = read_manifest(
+            folder,
+            what="checkpoint",
+            format=FORMAT,
+            fields=("denoiser", "text_encoder_sha256"),
+            files=(MODEL_FILE, STATISTICS_FILE),
+        )
         denoiser = Denoiser(DenoiserConfig.from_dict(config["denoiser"]))
         try:
             tensors = load_file(folder / MODEL_FILE)
             denoiser.load_state_dict({k: v.float() for k, v in tensors.items()})
         except (OSError, SafetensorError, RuntimeError) as error:
             raise CheckpointError(
-                f"checkpoint {folder}: {MODEL_FILE} does not fit its config.json ({error})"
+                f"checkpoint {folder}: {MODEL_FILE} does not fit its {CONFIG_FILE} ({error})"
             ) from error
         return cls(
             denoiser.eval(),
             Statistics.load(folder / STATISTICS_FILE),
             config["text_encoder_sha256"],
-            hashes[MODEL_FILE],
+            config["files"][MODEL_FILE],
         )
-
-
-def _read_config(folder: Path) -> dict:
-    try:
-        config = json.loads((folder / CONFIG_FILE).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise CheckpointError(
-            f"checkpoint {folder}: no {CONFIG_FILE}; a checkpoint is a folder with {CONFIG_FILE}, "
-            f"{MODEL_FILE} and {STATISTICS_FILE}"
-        ) from error
-    except ValueError as error:
-        raise CheckpointError(
-            f"checkpoint {folder}: {CONFIG_FILE} is not JSON ({error})"
-        ) from error
-    wanted = {"format", "denoiser", "text_encoder_sha256", "files"}
-    if not isinstance(config, dict) or not wanted <= set(config):
-        raise CheckpointError(f"checkpoint {folder}: {CONFIG_FILE} needs {sorted(wanted)}")
-    if config["format"] != FORMAT:
-        raise CheckpointError(
-            f"checkpoint {folder}: format {config['format']}, this version reads {FORMAT}"
-        )
-    if not {MODEL_FILE, STATISTICS_FILE} <= set(config["files"]):
-        raise CheckpointError(f"checkpoint {folder}: {CONFIG_FILE} gives no hashes of its files")
-    return config

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,11 +11,14 @@ import torch
 
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample
+from motiondiffuse_ros.diffusion.denoiser import Conditioning
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
 from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
-from motiondiffuse_ros.motion.features import REPRESENTATIONS
+from motiondiffuse_ros.motion.features import REPRESENTATIONS, Representation
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
+
+_BATCH_ROWS = 32
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ class MotionPipeline:
                 f"{', '.join(REPRESENTATIONS)}"
             )
         self._checkpoint, self._encoder = checkpoint, encoder
-        self._representation = REPRESENTATIONS[config.representation]()
+        self._representation: Representation = REPRESENTATIONS[config.representation]()
 
     @classmethod
     def from_pretrained(
@@ -87,6 +90,16 @@ class MotionPipeline:
         return self._checkpoint.denoiser.config.fps
 
     @property
+    def max_frames(self) -> int:
+        """Longest window that is sampled at once, frames."""
+        return self._checkpoint.denoiser.config.max_frames
+
+    @property
+    def representation(self) -> Representation:
+        """What the model's features mean."""
+        return self._representation
+
+    @property
     def weights_sha256(self) -> str:
         """Hash of the weights file."""
         return self._checkpoint.sha256
@@ -113,11 +126,7 @@ class MotionPipeline:
             blend_frames=blend_frames,
         )
         began = time.perf_counter()
-        tokens = self._encoder.encode([w.text for w in windows] + [""])
-        with torch.inference_mode():
-            every = denoiser.condition(
-                tokens.states.to(denoiser.device), tokens.mask.to(denoiser.device)
-            )
+        every = self._condition([*(w.text for w in windows), ""])
         encoded = time.perf_counter()
         features = sample(
             denoiser,
@@ -131,6 +140,54 @@ class MotionPipeline:
             on_step=on_step,
             cancelled=cancelled,
         )
-        clean = self._checkpoint.statistics.denormalise(features.cpu().numpy())
-        motions = tuple(self._representation.decode(row, self.fps) for row in clean)
+        motions = tuple(map(self._decode, features))
         return Samples(motions, encoded - began, time.perf_counter() - encoded)
+
+    def batch(
+        self,
+        texts: Sequence[str],
+        frames: Sequence[int],
+        *,
+        config: SamplerConfig,
+        seed: int,
+        on_progress: Callable[[int, int], None] | None = None,
+    ) -> list[Motion]:
+        """Sample one motion for each of many texts; see `sample_batch`.
+
+        Args:
+            texts: Conditions.
+            frames: Length of each motion, at most `max_frames`.
+            config: Sampler.
+            seed: Of all noise.
+            on_progress: Called with (motions done, motions in all).
+        """
+        order = sorted(range(len(texts)), key=lambda i: frames[i])  # like lengths share a batch
+        motions: dict[int, Motion] = {}
+        for start in range(0, len(order), _BATCH_ROWS):
+            rows = order[start : start + _BATCH_ROWS]
+            every = self._condition([*(texts[i] for i in rows), ""])
+            features = sample_batch(
+                self._checkpoint.denoiser,
+                torch.tensor([frames[i] for i in rows]),
+                every.expand(torch.arange(len(rows))),
+                every.expand(torch.tensor([len(rows)])),
+                config,
+                seed=seed + start,  # batches must not share their noise
+            )
+            for i, row in zip(rows, features, strict=True):
+                motions[i] = self._decode(row[: frames[i]])
+            if on_progress is not None:
+                on_progress(len(motions), len(texts))
+        return [motions[i] for i in range(len(texts))]
+
+    def _condition(self, texts: Sequence[str]) -> Conditioning:
+        denoiser = self._checkpoint.denoiser
+        tokens = self._encoder.encode(texts)
+        with torch.inference_mode():
+            return denoiser.condition(
+                tokens.states.to(denoiser.device), tokens.mask.to(denoiser.device)
+            )
+
+    def _decode(self, features: torch.Tensor) -> Motion:
+        clean = self._checkpoint.statistics.denormalise(features.cpu().numpy())
+        return self._representation.decode(clean, self.fps)

@@ -83,14 +83,66 @@ def sample(
         SamplingError: If the result is not finite.
     """
     config.validate()
-    scheduler = make_scheduler(config.scheduler, denoiser.config)
-    scheduler.set_timesteps(config.steps)
     generator = torch.Generator().manual_seed(seed)
     x = torch.randn((candidates, frames, denoiser.config.feature_dim), generator=generator)
-    x = x.to(denoiser.device)  # drawn on the CPU: a seed means the same on every device
     predict = _WindowedPrediction(
         denoiser, windows, conditioning, unconditional, config, candidates
     )
+    return _denoise(predict, x, denoiser, config, generator, on_step, cancelled)
+
+
+@torch.inference_mode()
+def sample_batch(
+    denoiser: Denoiser,
+    lengths: Tensor,
+    conditioning: Conditioning,
+    unconditional: Conditioning,
+    config: SamplerConfig,
+    *,
+    seed: int,
+) -> Tensor:
+    """Sample one motion for each of many texts: without composition, of any lengths.
+
+    Args:
+        denoiser: In evaluation mode.
+        lengths: Frames of each motion [B], at most the denoiser's window.
+        conditioning: A row for each text.
+        unconditional: One row, of the empty text.
+        config: Scheduler and guidance.
+        seed: Of all noise.
+
+    Returns:
+        Normalised features [B, T, D] float32; the first `lengths` frames of each count.
+
+    Raises:
+        SamplingError: If the result is not finite.
+    """
+    config.validate()
+    generator = torch.Generator().manual_seed(seed)
+    shape = (len(lengths), int(lengths.max()), denoiser.config.feature_dim)
+    x = torch.randn(shape, generator=generator)
+    lengths = lengths.to(denoiser.device)
+    free = unconditional.expand(torch.zeros(len(lengths), dtype=torch.long))
+
+    def predict(x: Tensor, step: int) -> Tensor:
+        steps = torch.full((len(x),), step, device=x.device)
+        return _guided(denoiser, config, x, steps, lengths, conditioning, free)
+
+    return _denoise(predict, x, denoiser, config, generator)
+
+
+def _denoise(
+    predict: Callable[[Tensor, int], Tensor],
+    x: Tensor,
+    denoiser: Denoiser,
+    config: SamplerConfig,
+    generator: torch.Generator,
+    on_step: Callable[[int, int], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Tensor:
+    scheduler = make_scheduler(config.scheduler, denoiser.config)
+    scheduler.set_timesteps(config.steps)
+    x = x.to(denoiser.device)  # drawn on the CPU: a seed means the same on every device
     extra = {"eta": config.eta} if config.scheduler == "ddim" else {}
     total = len(scheduler.timesteps)
     for done, step in enumerate(scheduler.timesteps):
@@ -102,10 +154,29 @@ def sample(
             on_step(done + 1, total)
     if not torch.isfinite(x).all():
         raise SamplingError(
-            f"sampling gave values that are not finite (seed {seed}, scheduler "
+            f"sampling gave values that are not finite (seed {generator.initial_seed()}, scheduler "
             f"{config.scheduler}, guidance scale {config.guidance_scale}); lower the guidance scale"
         )
     return x
+
+
+def _guided(
+    denoiser: Denoiser,
+    config: SamplerConfig,
+    noisy: Tensor,
+    steps: Tensor,
+    lengths: Tensor,
+    condition: Conditioning,
+    unconditional: Conditioning,
+) -> Tensor:
+    """Return the prediction under classifier-free guidance."""
+    scale = config.guidance_scale
+    with torch.autocast(noisy.device.type, torch.bfloat16, enabled=config.bf16):
+        conditional = denoiser(noisy, steps, lengths, condition)
+        if scale == 1.0:
+            return conditional
+        free = denoiser(noisy, steps, lengths, unconditional)
+    return free + scale * (conditional - free)
 
 
 class _WindowedPrediction:
@@ -148,24 +219,10 @@ class _WindowedPrediction:
                 window = self._windows[w]
                 row[: len(self._weights[w])] = x[c, window.start : window.stop]
             steps = torch.full((len(batch),), step, device=x.device)
-            prediction = self._guided(noisy, steps, lengths, condition, unconditional)
+            prediction = _guided(
+                self._denoiser, self._config, noisy, steps, lengths, condition, unconditional
+            )
             for row, (w, c) in zip(prediction, batch, strict=True):
                 window, weight = self._windows[w], self._weights[w]
                 out[c, window.start : window.stop] += weight * row[: len(weight)]
         return out
-
-    def _guided(
-        self,
-        noisy: Tensor,
-        steps: Tensor,
-        lengths: Tensor,
-        condition: Conditioning,
-        unconditional: Conditioning,
-    ) -> Tensor:
-        scale = self._config.guidance_scale
-        with torch.autocast(noisy.device.type, torch.bfloat16, enabled=self._config.bf16):
-            conditional = self._denoiser(noisy, steps, lengths, condition)
-            if scale == 1.0:
-                return conditional
-            free = self._denoiser(noisy, steps, lengths, unconditional)
-        return free + scale * (conditional - free)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -27,11 +27,13 @@ class WindowBatch:
         features: Normalised, padded with zeros [B, T, D].
         lengths: Frames that count [B].
         texts: B sentences.
+        synonyms: For each window every sentence that it might have come with.
     """
 
     features: torch.Tensor
     lengths: torch.Tensor
     texts: list[str]
+    synonyms: list[frozenset[str]]
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,7 @@ class _Window:
     start: int
     frames: int
     texts: tuple[str, ...]
+    mirrored: bool = False
 
 
 class WindowSampler:
@@ -56,7 +59,7 @@ class WindowSampler:
         *,
         max_frames: int,
         mirror: float,
-        statements: float,
+        statements: float = 0.0,
         seed: int,
     ) -> None:
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
@@ -71,16 +74,16 @@ class WindowSampler:
         """Yield batches for ever."""
         while True:
             windows = [self._draw() for _ in range(batch_size * _BUCKET_BATCHES)]
-            windows.sort(key=lambda drawn: drawn[0].frames)
+            windows.sort(key=lambda w: w.frames)
             for b in self._rng.permutation(_BUCKET_BATCHES):
                 yield self._collate(windows[b * batch_size : (b + 1) * batch_size])
 
-    def _draw(self) -> tuple[_Window, str, bool]:
+    def _draw(self) -> _Window:
         stated = self._stated and self._rng.random() < self._statements
         window = self._draw_stated() if stated else self._draw_captioned()
-        text = window.texts[self._rng.integers(len(window.texts))]
-        mirrored = bool(self._rng.random() < self._mirror)
-        return window, mirror_caption(text) if mirrored else text, mirrored
+        if self._rng.random() >= self._mirror:
+            return window
+        return replace(window, texts=tuple(map(mirror_caption, window.texts)), mirrored=True)
 
     def _draw_captioned(self) -> _Window:
         clip = self._clips[self._rng.choice(len(self._clips), p=self._probability)]
@@ -98,19 +101,23 @@ class WindowSampler:
         of_clip = of_kind[self._rng.integers(len(of_kind))]
         return of_clip[self._rng.integers(len(of_clip))]
 
-    def _collate(self, drawn: Sequence[tuple[_Window, str, bool]]) -> WindowBatch:
+    def _collate(self, windows: Sequence[_Window]) -> WindowBatch:
         # few distinct lengths, so that compiled kernels are reused
-        longest = -(-max(w.frames for w, _, _ in drawn) // self._step) * self._step
+        longest = -(-max(w.frames for w in windows) // self._step) * self._step
         features = np.zeros(
-            (len(drawn), longest, self._corpus.representation.dim), dtype=np.float32
+            (len(windows), longest, self._corpus.representation.dim), dtype=np.float32
         )
-        for row, (w, _, mirrored) in zip(features, drawn, strict=True):
+        for row, w in zip(features, windows, strict=True):
             x = self._corpus.of(w.clip)[w.start : w.start + w.frames]
-            if mirrored:
+            if w.mirrored:
                 x = x[:, self._mirror_index] * self._mirror_sign
             row[: w.frames] = self._corpus.statistics.normalise(x)
-        lengths = torch.tensor([w.frames for w, _, _ in drawn])
-        return WindowBatch(torch.from_numpy(features), lengths, [text for _, text, _ in drawn])
+        return WindowBatch(
+            torch.from_numpy(features),
+            torch.tensor([w.frames for w in windows]),
+            [w.texts[self._rng.integers(len(w.texts))] for w in windows],
+            [frozenset(w.texts) for w in windows],
+        )
 
 
 def _stated_windows(

@@ -8,6 +8,7 @@ from small_denoiser import SMALL
 from synthetic import standing, waving
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
+from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.statistics import compute_statistics
 from motiondiffuse_ros.corpus.store import Corpus, pack_clips
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
@@ -80,6 +81,16 @@ def test_mirrored_windows_have_mirrored_features_and_words(corpus):
     motion = corpus.representation.decode(features, 20.0)
     moving = {s: np.ptp(motion.joint(f"{s}_wrist"), axis=0).max() for s in ("left", "right")}
     assert moving["left"] > 10 * moving["right"]
+
+
+def test_stated_windows_come_with_what_their_kinematics_say(corpus):
+    sampler = WindowSampler(
+        corpus, corpus.split("train"), max_frames=64, mirror=0.5, statements=1.0, seed=0
+    )
+    batch = next(sampler.batches(8))
+    assert set(batch.texts) <= set(all_statements())
+    for text, synonyms in zip(batch.texts, batch.synonyms, strict=True):
+        assert text in synonyms
 
 
 def test_bad_settings_are_refused():

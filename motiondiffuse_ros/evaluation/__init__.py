@@ -1,0 +1,1 @@
+"""How good is a model: text-motion evaluator, the paper's metrics and protocol, baselines."""

@@ -1,0 +1,157 @@
+"""The trained evaluator: embeds texts and motions, recognises actions, and travels as a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+
+from motiondiffuse_ros.corpus.statistics import Statistics
+from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
+from motiondiffuse_ros.evaluation.config import EvaluatorConfig
+from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
+from motiondiffuse_ros.manifest import read_manifest, write_manifest
+from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.text import TextEncoder
+
+FORMAT = 1
+_NETWORK, _ACTIONS, _STATISTICS = (
+    "text_motion.safetensors",
+    "actions.safetensors",
+    "statistics.safetensors",
+)
+_BATCH = 64
+
+
+def shipped_evaluator() -> Path:
+    """Return the folder of the evaluator that comes with the package."""
+    return Path(str(files("motiondiffuse_ros"))) / "weights" / "evaluator"
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluator:
+    """A ruler for motions; the same for every model that is compared.
+
+    Attributes:
+        network: Text and motion encoders.
+        recogniser: Of actions.
+        actions: Its classes.
+        statistics: Normalisation of the features that both were trained with.
+        representation: Name of these features.
+        encoder: Frozen text encoder.
+        sha256: Hash of the text-motion weights; empty before saving.
+    """
+
+    network: TextMotionNetwork = field(repr=False)
+    recogniser: ActionNetwork = field(repr=False)
+    actions: tuple[str, ...]
+    statistics: Statistics = field(repr=False)
+    representation: str
+    encoder: TextEncoder = field(repr=False)
+    sha256: str = ""
+
+    @torch.inference_mode()
+    def embed_texts(self, texts: Sequence[str]) -> Array:
+        """Return unit vectors [N, space]."""
+        rows = []
+        for start in range(0, len(texts), _BATCH):
+            tokens = self.encoder.encode(texts[start : start + _BATCH])
+            rows.append(self.network.embed_text(tokens.states, tokens.mask))
+        return torch.cat(rows).numpy()
+
+    def embed_motions(self, features: Sequence[Array]) -> Array:
+        """Return unit vectors [N, space] of motions given as features [T, D], not normalised."""
+        return self._over(features, self.network.embed_motion)
+
+    def embed_actions(self, features: Sequence[Array]) -> Array:
+        """Return the recogniser's last hidden vectors [N, space]."""
+        return self._over(features, self.recogniser.embed)
+
+    def recognise(self, features: Sequence[Array]) -> Array:
+        """Return the index in `actions` that each motion is taken for [N]."""
+        return self._over(features, self.recogniser).argmax(axis=-1)
+
+    @torch.inference_mode()
+    def _over(
+        self,
+        features: Sequence[Array],
+        embed: Callable[[torch.Tensor, torch.Tensor], torch.Tensor],
+    ) -> Array:
+        # by length, so that batches have little padding; the last frames of a long one are cut
+        longest = self.network.config.max_frames
+        order = sorted(range(len(features)), key=lambda i: len(features[i]))
+        rows: list[Array] = [np.empty(0)] * len(features)
+        for start in range(0, len(order), _BATCH):
+            batch = order[start : start + _BATCH]
+            cut = [self.statistics.normalise(features[i][:longest]) for i in batch]
+            lengths = torch.tensor([len(x) for x in cut])
+            x = torch.nn.utils.rnn.pad_sequence(
+                [torch.from_numpy(np.asarray(x, dtype=np.float32)) for x in cut], batch_first=True
+            )
+            for i, row in zip(batch, embed(x, lengths).numpy(), strict=True):
+                rows[i] = row
+        return np.stack(rows)
+
+    def save_pretrained(self, folder: Path) -> None:
+        """Write the folder; weights in float16."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, module in ((_NETWORK, self.network), (_ACTIONS, self.recogniser)):
+            tensors = {k: v.detach().half().contiguous() for k, v in module.state_dict().items()}
+            save_file(tensors, folder / name)
+        self.statistics.save(folder / _STATISTICS)
+        config = {
+            "format": FORMAT,
+            "evaluator": self.network.config.to_dict(),
+            "actions": list(self.actions),
+            "representation": self.representation,
+            "text_encoder_sha256": self.encoder.sha256,
+        }
+        write_manifest(folder, config, (_NETWORK, _ACTIONS, _STATISTICS))
+
+    @classmethod
+    def from_pretrained(cls, folder: Path, encoder: TextEncoder) -> Evaluator:
+        """Read an evaluator folder; no pickles, and every file must have its recorded hash.
+
+        Raises:
+            CheckpointError: If a file is missing, truncated, altered or of another format.
+            TextEncoderError: If it was trained with another text encoder.
+        """
+        folder = Path(folder)
+        manifest = read_manifest(
+            folder,
+            what="evaluator",
+            format=FORMAT,
+            fields=("evaluator", "actions", "representation", "text_encoder_sha256"),
+            files=(_NETWORK, _ACTIONS, _STATISTICS),
+        )
+        if manifest["text_encoder_sha256"] != encoder.sha256:
+            raise TextEncoderError(
+                f"evaluator {folder} was trained with {manifest['text_encoder_sha256'][:12]}…, "
+                f"not with {encoder.name} {encoder.sha256[:12]}…"
+            )
+        config = EvaluatorConfig.from_dict(manifest["evaluator"])
+        actions = tuple(manifest["actions"])
+        network, recogniser = TextMotionNetwork(config), ActionNetwork(config, len(actions))
+        for name, module in ((_NETWORK, network), (_ACTIONS, recogniser)):
+            try:
+                tensors = load_file(folder / name)
+                module.load_state_dict({k: v.float() for k, v in tensors.items()})
+            except (OSError, SafetensorError, RuntimeError) as error:
+                raise CheckpointError(
+                    f"evaluator {folder}: {name} does not fit its configuration ({error})"
+                ) from error
+        return cls(
+            network.eval(),
+            recogniser.eval(),
+            actions,
+            Statistics.load(folder / _STATISTICS),
+            manifest["representation"],
+            encoder,
+            manifest["files"][_NETWORK],
+        )

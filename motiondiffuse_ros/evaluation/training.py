@@ -1,0 +1,163 @@
+"""Training of the evaluator, on the training split alone."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.nn import functional as F
+
+from motiondiffuse_ros.corpus.store import Clip, Corpus
+from motiondiffuse_ros.errors import CorpusError
+from motiondiffuse_ros.evaluation.actions import action_of, actions_of
+from motiondiffuse_ros.evaluation.config import EvaluatorConfig, EvaluatorTraining
+from motiondiffuse_ros.evaluation.evaluator import Evaluator
+from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
+from motiondiffuse_ros.text import TextEncoder
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions
+from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
+
+_ALIKE = 0.9
+_DIRECTIONS = re.compile(
+    r"\b(left|right|both|forwards?|back|backwards?|up|down|clockwise|counterclockwise)\b"
+)
+
+Progress = Callable[[str, float, float], None]
+"""Called with what is trained, the share done and the running loss."""
+
+
+def train_evaluator(
+    corpus: Corpus,
+    encoder: TextEncoder,
+    config: EvaluatorConfig,
+    training: EvaluatorTraining,
+    on_progress: Progress | None = None,
+) -> Evaluator:
+    """Train both networks of an evaluator.
+
+    Raises:
+        CorpusError: If the corpus has no clip with an action (see `action_of`).
+    """
+    clips = corpus.split("train")
+    labelled = [clip for clip in clips if action_of(clip) is not None]
+    if not labelled:
+        raise CorpusError("no clip of the corpus has an action in its name; see evaluation/actions")
+    torch.manual_seed(training.seed)
+    actions = actions_of(labelled)
+    network, recogniser = TextMotionNetwork(config), ActionNetwork(config, len(actions))
+    captions = CaptionStates(all_captions(clips), encoder)
+
+    def pair_loss(batch: WindowBatch) -> Tensor:
+        tokens = captions.batch(batch.texts)
+        text = network.embed_text(tokens.states, tokens.mask)
+        motion = network.embed_motion(batch.features, batch.lengths)
+        logits = network.log_scale.clamp(max=4.0).exp() * (text @ motion.T)
+        pooled = F.normalize(
+            (tokens.states * tokens.mask[..., None]).sum(1) / tokens.mask.sum(1, keepdim=True),
+            dim=-1,
+        )
+        logits = logits.masked_fill(not_wrong(batch, pooled), -1e4)
+        own = torch.arange(len(logits))
+        return 0.5 * (F.cross_entropy(logits, own) + F.cross_entropy(logits.T, own))
+
+    pairs = _windows(corpus, clips, config, training, training.statements)
+    _fit(network, pairs, pair_loss, training, training.minutes, "text and motion", on_progress)
+
+    index = {label: i for i, label in enumerate(actions)}
+    # the label takes the place of the captions, so that mirroring swaps it too
+    acts = [_with_label(clip) for clip in labelled]
+
+    def action_loss(batch: WindowBatch) -> Tensor:
+        logits = recogniser(batch.features, batch.lengths)
+        return F.cross_entropy(logits, torch.tensor([index[text] for text in batch.texts]))
+
+    windows = _windows(corpus, acts, config, training, 0.0)
+    _fit(
+        recogniser, windows, action_loss, training, training.action_minutes, "actions", on_progress
+    )
+    return Evaluator(
+        network.eval(),
+        recogniser.eval(),
+        actions,
+        corpus.statistics,
+        corpus.representation.name,
+        encoder,
+    )
+
+
+def not_wrong(batch: WindowBatch, pooled: Tensor) -> Tensor:
+    """Return [B, B] bool: pairs of a text and another's motion that are no wrong answer.
+
+    That is a text the motion might have come with, or one that says the same: close in the space
+    of the text encoder and with the same words of direction, which that space hardly tells apart.
+    TMR drops these from its loss likewise.
+
+    Args:
+        batch: Windows.
+        pooled: Unit vectors of the texts [B, D].
+    """
+    said = [tuple(sorted(_DIRECTIONS.findall(text.lower()))) for text in batch.texts]
+    way = np.array([hash(words) for words in said])
+    alike = (pooled @ pooled.T > _ALIKE) & torch.from_numpy(way[:, None] == way[None])
+    same = torch.tensor([[text in words for words in batch.synonyms] for text in batch.texts])
+    mask = alike | same | same.T
+    mask.fill_diagonal_(False)
+    return mask
+
+
+def _windows(
+    corpus: Corpus,
+    clips: Sequence[Clip],
+    config: EvaluatorConfig,
+    training: EvaluatorTraining,
+    statements: float,
+) -> Iterator[WindowBatch]:
+    sampler = WindowSampler(
+        corpus,
+        clips,
+        max_frames=config.max_frames,
+        mirror=0.5,
+        statements=statements,
+        seed=training.seed,
+    )
+    return sampler.batches(training.batch_size)
+
+
+def _with_label(clip: Clip) -> Clip:
+    label = action_of(clip)
+    assert label is not None
+    return Clip(clip.name, clip.dataset, clip.split, (label,), clip.start, clip.frames)
+
+
+def _fit(
+    module: torch.nn.Module,
+    batches: Iterator[WindowBatch],
+    loss_of: Callable[[WindowBatch], Tensor],
+    training: EvaluatorTraining,
+    minutes: float,
+    what: str,
+    on_progress: Progress | None,
+) -> None:
+    optimizer = torch.optim.AdamW(
+        module.parameters(), lr=training.learning_rate, weight_decay=training.weight_decay
+    )
+    module.train()
+    began, mean = time.monotonic(), 0.0
+    while (done := (time.monotonic() - began) / (60.0 * minutes)) < 1.0:
+        warmup = min(1.0, done / 0.02 + 0.01)
+        for group in optimizer.param_groups:
+            group["lr"] = training.learning_rate * warmup * 0.5 * (1.0 + math.cos(math.pi * done))
+        with torch.autocast("cpu", torch.bfloat16):
+            loss = loss_of(next(batches))
+        optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(module.parameters(), 1.0)
+        optimizer.step()
+        mean = loss.item() if mean == 0.0 else 0.98 * mean + 0.02 * loss.item()
+        if on_progress is not None:
+            on_progress(what, done, mean)

@@ -1,0 +1,66 @@
+"""Folders of weights: files of tensors, and a config.json that holds their hashes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from motiondiffuse_ros.errors import CheckpointError
+from motiondiffuse_ros.hashing import file_sha256
+
+CONFIG_FILE = "config.json"
+
+
+def write_manifest(folder: Path, config: dict[str, Any], files: Iterable[str]) -> None:
+    """Write config.json: `config` and the SHA-256 of files of the folder."""
+    hashes = {name: file_sha256(folder / name) for name in files}
+    text = json.dumps({**config, "files": hashes}, indent=2)
+    (folder / CONFIG_FILE).write_text(text + "\n", encoding="utf-8")
+
+
+def read_manifest(
+    folder: Path, *, what: str, format: int, fields: Iterable[str], files: Iterable[str]
+) -> dict[str, Any]:
+    """Read config.json and verify every file that it lists.
+
+    Args:
+        folder: Of the weights.
+        what: Their kind, for messages.
+        format: Value that its field `format` must have.
+        fields: Further fields that it must have.
+        files: Files that it must list.
+
+    Raises:
+        CheckpointError: If a file is missing, truncated, altered or of another format.
+    """
+    try:
+        config = json.loads((folder / CONFIG_FILE).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CheckpointError(
+            f"{what} {folder}: no {CONFIG_FILE}; it is a folder with "
+            f"{', '.join((CONFIG_FILE, *files))}"
+        ) from error
+    except ValueError as error:
+        raise CheckpointError(f"{what} {folder}: {CONFIG_FILE} is not JSON ({error})") from error
+    wanted = {"format", "files", *fields}
+    if not isinstance(config, dict) or not wanted <= set(config):
+        raise CheckpointError(f"{what} {folder}: {CONFIG_FILE} needs {sorted(wanted)}")
+    if config["format"] != format:
+        raise CheckpointError(
+            f"{what} {folder}: format {config['format']}, this version reads {format}"
+        )
+    if not set(files) <= set(config["files"]):
+        raise CheckpointError(f"{what} {folder}: {CONFIG_FILE} gives no hashes of its files")
+    for name, expected in config["files"].items():
+        try:
+            sha256 = file_sha256(folder / name)
+        except OSError as error:
+            raise CheckpointError(f"{what} {folder}: {name} is missing") from error
+        if sha256 != expected:
+            raise CheckpointError(
+                f"{what} {folder}: {name} is truncated or altered "
+                f"(SHA-256 {sha256[:12]}…, {CONFIG_FILE} says {expected[:12]}…)"
+            )
+    return config
