@@ -1,8 +1,9 @@
-"""Do samples do what the words say? Six prompts and their mirror, judged by kinematic rules.
+"""Do samples do what the words say? Prompts judged by kinematic rules, through the planner.
 
-    python -m benchmarks.prompt_probes [--seeds 8] [--weights DIR] [--json F] [--sheet PNG]
+    python -m benchmarks.prompt_probes [--free] [--seeds 8] [--weights DIR] [--json F] [--sheet PNG]
 
-These prompts were used in no training. Rules are stated beside each; figures are counts over seeds.
+Six prompts and a mirror image, or with --free the longer list of `free_prompts`, whose texts are in
+no training data. Rules are stated beside each; figures are counts over seeds.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
+from benchmarks.free_prompts import FREE_PROMPTS
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.planner import Planner, PlannerConfig
 from motiondiffuse_ros.render import contact_sheet
@@ -45,6 +47,8 @@ class Probe:
 class Options:
     """What to run."""
 
+    free: bool = False
+    """The prompts of `free_prompts` instead of the six."""
     weights: Path | None = None
     """Checkpoint folder; the shipped one if not given."""
     seeds: int = 8
@@ -129,9 +133,16 @@ PROBES = (
 )
 
 
+FREE_PROBES = tuple(
+    Probe(text, rule.words, lambda motion, _, rule=rule: rule.holds(motion))
+    for text, rule in FREE_PROMPTS.items()
+)
+
+
 def main() -> None:
-    """Run all probes and print the table."""
+    """Run the probes and print the table."""
     options = tyro.cli(Options)
+    probes = FREE_PROBES if options.free else PROBES
     planner = Planner(
         PlannerConfig(
             weights=options.weights,
@@ -143,20 +154,23 @@ def main() -> None:
     )
     motions: dict[str, list[Motion]] = {}
     verdicts: dict[str, list[str]] = {}
-    jobs = [(probe, seed) for probe in PROBES for seed in range(options.seeds)]
+    jobs = [(probe, seed) for probe in probes for seed in range(options.seeds)]
     for probe, seed in track(jobs, "sampling"):
         plan = planner.plan(MotionRequest.from_text(probe.text, SECONDS, seed=seed))
         motions.setdefault(probe.text, []).append(plan.motion)
         verdicts.setdefault(probe.text, []).append(plan.report.verdict)
-    walk = float(np.mean([travelled(m) for m in motions[PROBES[0].text]]))
+    walk = float(np.mean([travelled(m) for m in motions[probes[0].text]]))
     table = Table("prompt", "rule", f"holds of {options.seeds}", "plausible or marginal")
     rows = []
-    for probe in PROBES:
+    for probe in probes:
         passed = [seed for seed, m in enumerate(motions[probe.text]) if probe.holds(m, walk)]
         sound = sum(v != "implausible" for v in verdicts[probe.text])
         table.add_row(probe.text, probe.rule, str(len(passed)), str(sound))
         rows.append({"text": probe.text, "passed": passed, "not_implausible": sound})
     Console().print(table)
+    counts = [len(row["passed"]) for row in rows]
+    held, asked = sum(counts), options.seeds * len(rows)
+    print(f"{held} of {asked} samples hold ({held / asked:.1%}); least {min(counts)} of a prompt")
     if options.json is not None:
         result = {
             "weights_sha256": planner.weights_sha256,
@@ -165,11 +179,13 @@ def main() -> None:
             "guidance_scale": options.guidance_scale,
             "steps": options.steps,
             "walk_m": round(walk, 3),
+            "held": held,
+            "asked": asked,
             "rows": rows,
         }
         options.json.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
     if options.sheet is not None:
-        shown = [(p.text, motions[p.text][options.sheet_seed]) for p in PROBES]
+        shown = [(p.text, motions[p.text][options.sheet_seed]) for p in probes]
         contact_sheet(shown, options.sheet)
 
 
