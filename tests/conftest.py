@@ -21,13 +21,24 @@ REAL_CLIPS = {
 }
 
 
+def _data(needed: str) -> Path:
+    checkout = Path(__file__).resolve().parents[1]
+    data = Path(os.environ.get("MOTIONDIFFUSE_DATA", checkout.parent / "shared" / "data"))
+    if not (data / needed).exists():
+        pytest.skip(f"no motion capture at {data} (set MOTIONDIFFUSE_DATA)")
+    return data
+
+
+@pytest.fixture(scope="session")
+def humanml3d_sample() -> Path:
+    """The folder of the one clip that HumanML3D publishes with its repository."""
+    return _data("humanml3d_sample") / "humanml3d_sample"
+
+
 @pytest.fixture(scope="session")
 def real_clips(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a few real BVH clips: cmu/ and bandai-namco/."""
-    checkout = Path(__file__).resolve().parents[1]
-    data = Path(os.environ.get("MOTIONDIFFUSE_DATA", checkout.parent / "shared" / "data"))
-    if not (data / "cmu.tar.xz").is_file():
-        pytest.skip(f"no motion capture at {data} (set MOTIONDIFFUSE_DATA)")
+    data = _data("cmu.tar.xz")
     folder = tmp_path_factory.mktemp("clips")
     for name, clips in REAL_CLIPS.items():
         wanted = {f"{name}/{clip}.bvh" for clip in clips}

@@ -17,6 +17,14 @@ from motiondiffuse_ros.cli.parsing import parse
 from motiondiffuse_ros.corpus.build import BuildConfig, Source, build_corpus
 from motiondiffuse_ros.corpus.captions import shipped_caption_files
 from motiondiffuse_ros.corpus.originals import fetch
+from motiondiffuse_ros.corpus.published import (
+    Babel,
+    HumanAct12,
+    HumanML3DFolder,
+    KitMLFolder,
+    PublishedDataset,
+    Uestc,
+)
 from motiondiffuse_ros.corpus.quality import QualityConfig
 from motiondiffuse_ros.corpus.skeleton_map import SkeletonMap
 from motiondiffuse_ros.corpus.split import SPLITS
@@ -26,7 +34,11 @@ from motiondiffuse_ros.errors import InputError
 
 @dataclass(frozen=True)
 class Build:
-    """Import folders of BVH files with their captions into a corpus for training."""
+    """Import motion with captions into a corpus for training: BVH files, or a published data set.
+
+    A published data set keeps its own representation, rate and split; only data sets that agree
+    in representation and rate can be built into one corpus.
+    """
 
     cmu: Path | None = None
     """Folder of the CMU database as BVH (Daz-friendly cgspeed conversion)."""
@@ -36,12 +48,24 @@ class Build:
     """Further folders of BVH files."""
     skeleton_map: Path | None = None
     """YAML skeleton map for the folders of --bvh; a shipped one that fits if not given."""
+    humanml3d: Path | None = None
+    """Folder of HumanML3D (train.txt, new_joint_vecs, texts)."""
+    kit_ml: Path | None = None
+    """Folder of KIT-ML in the same layout."""
+    humanact12: Path | None = None
+    """Folder of HumanAct12's .npy files."""
+    uestc: Path | None = None
+    """Folder of UESTC's poses as published with ACTOR (vibe_cache_refined.pkl, info)."""
+    babel: Path | None = None
+    """Folder of BABEL's JSON files; needs --amass."""
+    amass: Path | None = None
+    """Folder of AMASS, for --babel."""
     captions: tuple[Path, ...] = ()
-    """Caption files (JSON lines); the shipped ones if not given."""
+    """Caption files (JSON lines) for BVH files; the shipped ones if not given."""
     out: Path = Path("corpus")
     """Folder for the corpus."""
     fps: float = 20.0
-    """Frame rate [Hz]."""
+    """Frame rate of what is read from BVH files [Hz]."""
     min_seconds: float = QualityConfig.min_seconds
     """Shorter clips are dropped [s]."""
     max_joint_speed: float = QualityConfig.max_joint_speed
@@ -82,16 +106,18 @@ def _build(options: Build) -> int:
     sources = [Source(name, folder) for name, folder in named if folder is not None]
     own_map = None if options.skeleton_map is None else SkeletonMap.from_yaml(options.skeleton_map)
     sources += [Source(folder.resolve().name, folder, own_map) for folder in options.bvh]
+    quality = QualityConfig(
+        min_seconds=options.min_seconds,
+        max_joint_speed=options.max_joint_speed,
+        max_root_speed=options.max_root_speed,
+    )
     config = BuildConfig(
         tuple(sources),
         options.captions or shipped_caption_files(),
         options.fps,
-        QualityConfig(
-            min_seconds=options.min_seconds,
-            max_joint_speed=options.max_joint_speed,
-            max_root_speed=options.max_root_speed,
-        ),
+        quality,
         options.workers,
+        _published(options, quality),
     )
     config.validate()
     console = Console()
@@ -107,6 +133,23 @@ def _build(options: Build) -> int:
         console.print(f"dropped {count}: {reason}")
     console.print(f"written to {options.out}")
     return 0
+
+
+def _published(options: Build, quality: QualityConfig) -> tuple[PublishedDataset, ...]:
+    chosen: list[PublishedDataset] = []
+    if options.humanml3d is not None:
+        chosen.append(HumanML3DFolder(options.humanml3d))
+    if options.kit_ml is not None:
+        chosen.append(KitMLFolder(options.kit_ml))
+    if options.humanact12 is not None:
+        chosen.append(HumanAct12(options.humanact12, quality))
+    if options.uestc is not None:
+        chosen.append(Uestc(options.uestc, quality))
+    if (options.babel is None) != (options.amass is None):
+        raise InputError("--babel and --amass go together: BABEL labels the motions of AMASS")
+    if options.babel is not None and options.amass is not None:
+        chosen.append(Babel(options.babel, options.amass, quality))
+    return tuple(chosen)
 
 
 def _summary(corpus: Corpus) -> Table:

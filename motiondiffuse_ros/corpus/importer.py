@@ -22,6 +22,7 @@ from motiondiffuse_ros.motion.frames import (
     vectors_to_y_up,
     vectors_to_z_up,
 )
+from motiondiffuse_ros.motion.from_positions import root_under_hips
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, LEG_LENGTH, TOE_HEIGHT
 
@@ -46,9 +47,7 @@ def load_motion(path: Path, skeleton_map: SkeletonMap | None = None) -> Motion:
     if motion.frames <= chosen.skip_frames:
         raise MotionFileError(f"{path}: no frames after the first {chosen.skip_frames}")
     motion = motion.slice(chosen.skip_frames, motion.frames)
-    if chosen.find_floor:
-        motion = replace(motion, root=motion.root - [0.0, 0.0, floor_height(motion)])
-    return motion
+    return on_floor(motion) if chosen.find_floor else motion
 
 
 def retarget_clip(clip: BvhClip, skeleton_map: SkeletonMap) -> Motion:
@@ -73,8 +72,7 @@ def retarget_clip(clip: BvhClip, skeleton_map: SkeletonMap) -> Motion:
     hips = [index[skeleton_map.joints[f"{side}_hip"][0]] for side in ("left", "right")]
     scale = LEG_LENGTH / _leg_length(clip, skeleton_map)
     middle = vectors_to_z_up(clip.positions[:, hips].mean(axis=1)) * scale
-    canonical_hips = [CANONICAL.index("left_hip"), CANONICAL.index("right_hip")]
-    root = middle - rot.rotate(world[:, 0], CANONICAL.offsets[canonical_hips].mean(axis=0))
+    root = root_under_hips(middle, world[:, 0])
     return Motion(root, CANONICAL.local_rotations(world), 1.0 / clip.frame_time)
 
 
@@ -103,6 +101,11 @@ def _leg_length(clip: BvhClip, skeleton_map: SkeletonMap) -> float:
         for joint in ("knee", "ankle")
     ]
     return float(sum(lengths)) / 2.0
+
+
+def on_floor(motion: Motion) -> Motion:
+    """Return the motion with the floor its feet stand on at z = 0."""
+    return replace(motion, root=motion.root - [0.0, 0.0, floor_height(motion)])
 
 
 def floor_height(motion: Motion) -> float:

@@ -22,11 +22,11 @@ def name_side(text: str, features: Array, representation: Representation, fps: f
     Args:
         text: A caption.
         features: Of the window [T, D], not normalised.
-        representation: What they mean; must have root velocities.
+        representation: What they mean; without root velocities no side is certain.
         fps: Their rate, Hz.
     """
     forms = forms_of(text)
-    if len(forms) == 1:
+    if len(forms) == 1 or "root_velocity" not in representation.groups():
         return text
     side = Travel.of(features, representation, fps).side
     return forms[0] if side == 0 else forms[1 if side > 0 else 2]

@@ -12,7 +12,7 @@ import numpy as np
 
 from motiondiffuse_ros.corpus.travel import Travel
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
-from motiondiffuse_ros.motion.features import Representation
+from motiondiffuse_ros.motion.features import PoseState, Representation
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import CANONICAL
 
@@ -73,9 +73,11 @@ def state(features: Array, representation: Representation, fps: float) -> tuple[
 
     Args:
         features: Of the window [T, D], not normalised.
-        representation: What they mean; must have the blocks of the pose state.
+        representation: What they mean; nothing is stated of other than the pose state.
         fps: Their rate, Hz.
     """
+    if representation.name != PoseState.name:
+        return ()
     kinds: list[tuple[str, int]] = []
     groups = representation.groups()
     root = features[:, groups["rotations"]][:, :6].reshape(-1, 2, 3)

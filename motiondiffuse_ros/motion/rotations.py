@@ -86,6 +86,22 @@ def to_matrix(q: Array) -> Array:
     ).reshape(*w.shape, 3, 3)
 
 
+def to_columns(q: Array) -> Array:
+    """Convert quaternions to the first two columns of their matrices, [..., 6]."""
+    return np.swapaxes(to_matrix(q)[..., :2], -1, -2).reshape(*np.shape(q)[:-1], 6)
+
+
+def from_columns(columns: Array) -> Array:
+    """Undo `to_columns`: the nearest rotation by Gram-Schmidt (Zhou et al. 2019).
+
+    Columns [..., 6] that were sampled may vanish; any direction is then as good.
+    """
+    a, b = columns[..., :3], columns[..., 3:]
+    x = unit(a)
+    y = unit(b - np.sum(x * b, axis=-1, keepdims=True) * x)
+    return from_matrix(np.stack([x, y, np.cross(x, y)], axis=-1))
+
+
 def from_rotation_vector(v: Array) -> Array:
     """Convert rotation vectors (axis times angle, rad) to quaternions."""
     angle = np.linalg.norm(v, axis=-1, keepdims=True)
@@ -127,11 +143,21 @@ def twist_angle(q: Array, axis: int) -> Array:
 
 
 def shortest_arc(a: Array, b: Array) -> Array:
-    """Return the smallest rotation that takes direction a to direction b (not opposite)."""
-    a = a / np.linalg.norm(a, axis=-1, keepdims=True)
-    b = b / np.linalg.norm(b, axis=-1, keepdims=True)
+    """Return the smallest rotation that takes direction a to direction b.
+
+    Half a turn about some perpendicular axis where they are opposite; none where one is zero.
+    """
+    a, b = np.broadcast_arrays(unit(a), unit(b))
     w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
-    return normalise(np.concatenate([w, np.cross(a, b)], axis=-1))
+    opposite = w < 1e-9
+    perpendicular = np.cross(a, np.eye(3)[np.argmin(np.abs(a), axis=-1)])
+    axis = np.where(opposite, perpendicular, np.cross(a, b))
+    return normalise(np.concatenate([np.where(opposite, 0.0, w), axis], axis=-1))
+
+
+def unit(v: Array) -> Array:
+    """Scale vectors [..., 3] to unit length; one that vanishes stays what it is."""
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-8)
 
 
 def slerp(a: Array, b: Array, t: float | Array) -> Array:
