@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motiondiffuse_ros.corpus.travel import Travel
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
@@ -132,7 +133,7 @@ def _travelling(way: Travel, walks: bool) -> list[tuple[str, int]]:
     return []
 
 
-def _walks(contacts: Array) -> bool:
+def _walks(contacts: NDArray[np.bool_]) -> bool:
     """Whether each foot leaves the floor and stands on it, and one of them most of the time."""
     half = len(CONTACT_JOINTS) // 2
     feet = np.stack([contacts[:, :half].any(axis=1), contacts[:, half:].any(axis=1)], axis=1)

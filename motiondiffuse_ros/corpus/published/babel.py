@@ -8,7 +8,7 @@
 
 Where there are frame labels each is a clip; otherwise the labels of the sequence are captions of
 the whole. Transitions are left out, and so are `extra_*.json`. The labels of the test split are
-not published, so that its sequences have no caption and `val` is what can be evaluated on.
+published as null, so that its sequences have no caption and `val` is what can be evaluated on.
 
 The size of the persons is not known without SMPL's files, so that paths are not scaled.
 """
@@ -151,9 +151,10 @@ def _pieces(entry: dict[str, Any]) -> list[tuple[tuple[float, float] | None, tup
     if entry.get("frame_ann"):
         by_time: dict[tuple[float, float], list[str]] = {}
         for label in entry["frame_ann"]["labels"]:
-            times = (float(label["start_t"]), float(label["end_t"]))
-            by_time.setdefault(times, []).append(_caption(label))
-        return [(times, tuple(filter(None, captions))) for times, captions in by_time.items()]
+            if caption := _caption(label):
+                times = (float(label["start_t"]), float(label["end_t"]))
+                by_time.setdefault(times, []).append(caption)
+        return [(times, tuple(captions)) for times, captions in by_time.items()]
     annotation = entry.get("seq_ann")
     captions = [_caption(label) for label in annotation["labels"]] if annotation else []
     whole = tuple(filter(None, captions))
@@ -161,7 +162,7 @@ def _pieces(entry: dict[str, Any]) -> list[tuple[tuple[float, float] | None, tup
 
 
 def _caption(label: dict[str, Any]) -> str:
-    """Return a label as it was typed."""
+    """Return a label as it was typed; empty if it is withheld."""
     if _TRANSITION in (label.get("act_cat") or ()):
         return _TRANSITION
     return str(label.get("raw_label") or label.get("proc_label") or "").strip()

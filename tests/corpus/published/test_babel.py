@@ -2,14 +2,13 @@ import json
 
 import numpy as np
 import pytest
+from smpl_poses import smpl_poses
 from synthetic import drifting, standing, waving
 
 from motiondiffuse_ros.corpus.build import BuildConfig, build_corpus
 from motiondiffuse_ros.corpus.published import Babel
 from motiondiffuse_ros.errors import CorpusError
 from motiondiffuse_ros.motion import rotations as rot
-
-from .smpl_poses import smpl_poses
 
 Z_UP = rot.from_matrix(np.eye(3)[[2, 0, 1]])  # from y up to AMASS's world
 WALK = drifting(standing(480, 120.0), 1.0)
@@ -66,6 +65,8 @@ def folders(tmp_path):
         label("hopping", "hop", 2.2, 2.5),
         label("standing", "stand", 2.5, 4.001),
     ]
+    withheld = {"raw_label": None, "proc_label": None, "seg_id": "2970072b", "act_cat": None}
+    timed = {**withheld, "start_t": 0, "end_t": 2}
     splits = {
         "train": [
             sequence(7692, walk, [label("jump", "jump")], frames),
@@ -74,7 +75,7 @@ def folders(tmp_path):
         "val": [
             sequence(31, wave, [label("wave right hand", "wave"), label("greet", "greet")], None)
         ],
-        "test": [sequence(99, walk, None, None)],
+        "test": [sequence(99, walk, [withheld], None), sequence(98, walk, [withheld], [timed])],
     }
     for split, sequences in splits.items():
         entries = {str(s["babel_sid"]): s for s in sequences}
@@ -98,7 +99,7 @@ def test_frame_labels_are_clips_and_sequence_labels_the_rest(folders):
         "transition": 1,
         "shorter than 0.8 s": 1,
         "no motion file": 1,
-        "no caption": 1,
+        "no caption": 2,
     }
     assert (corpus.representation.name, corpus.fps) == ("root_rotations", 30.0)
 

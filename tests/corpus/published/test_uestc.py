@@ -2,14 +2,13 @@ import pickle
 
 import numpy as np
 import pytest
+from smpl_poses import smpl_poses
 from synthetic import drifting, standing, waving
 
 from motiondiffuse_ros.corpus.build import BuildConfig, build_corpus
 from motiondiffuse_ros.corpus.published import Uestc
 from motiondiffuse_ros.errors import CorpusError
 from motiondiffuse_ros.motion import rotations as rot
-
-from .smpl_poses import smpl_poses
 
 CAMERA = rot.about_axis(0, np.array(np.pi))  # y down, z away
 CLIPS = {
