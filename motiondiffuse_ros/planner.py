@@ -15,12 +15,15 @@ from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.errors import Cancelled, RequestError
+from motiondiffuse_ros.evaluation.config import EvaluatorConfig
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.bvh import write_bvh
 from motiondiffuse_ros.physics.repair import put_on_floor
-from motiondiffuse_ros.physics.report import Report, assess
+from motiondiffuse_ros.physics.report import Report, assess, with_tracking
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import JointTrajectory, Robot, build_trajectory, get_robot
+from motiondiffuse_ros.selection import choose, text_matches
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -43,7 +46,7 @@ class PlannerConfig:
         scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
         steps: Denoising steps.
         guidance_scale: Classifier-free guidance.
-        candidates: Motions to choose the most plausible from.
+        candidates: Motions to choose from, by match with the texts and by plausibility.
         control_rate: Rate of the trajectory, Hz.
         track: Whether the chosen motion is also judged by simulated tracking.
         device: Torch device of the denoiser.
@@ -99,6 +102,7 @@ class Plan:
         report: Physics verdict on the motion.
         timings_s: Seconds for text, sampling, physics, retargeting and total.
         candidate: Index of the chosen candidate.
+        text_match: How well it matches the texts, -1 to 1; None where that cannot be judged.
         scheduler: Sampler that was used.
     """
 
@@ -111,6 +115,7 @@ class Plan:
     report: Report
     timings_s: dict[str, float]
     candidate: int
+    text_match: float | None
     scheduler: str
 
     def to_dict(self) -> dict[str, Any]:
@@ -125,6 +130,7 @@ class Plan:
             "duration_s": self.trajectory.duration,
             "scheduler": self.scheduler,
             "candidate": self.candidate,
+            "text_match": self.text_match,
             "notes": list(self.trajectory.notes),
             "report": self.report.to_dict(),
             "timings_s": self.timings_s,
@@ -137,8 +143,9 @@ class Plan:
         self.motion.save_npz(folder / "motion.npz")
         self.trajectory.save_csv(folder / "trajectory.csv")
         self.trajectory.save_root_csv(folder / "root.csv")
-        _write_json(self.report.to_dict(), folder / "report.json")
-        _write_json(self.to_dict(), folder / "plan.json")
+        self.report.save(folder / "report.json")
+        plan = json.dumps(self.to_dict(), indent=2)
+        (folder / "plan.json").write_text(plan + "\n", encoding="utf-8")
 
 
 class Planner:
@@ -158,6 +165,16 @@ class Planner:
         self._pipeline = MotionPipeline.from_pretrained(
             weights, config.text_encoder, device=config.device
         )
+        self._evaluator = self._load_evaluator()
+
+    def _load_evaluator(self) -> Evaluator | None:
+        """Return the shipped evaluator, if it speaks of the same features and text encoder."""
+        encoder = self._pipeline.encoder
+        if encoder.name != EvaluatorConfig.text_encoder:
+            return None
+        evaluator = Evaluator.from_pretrained(shipped_evaluator(), encoder)
+        known = evaluator.representation == self._pipeline.representation.name
+        return evaluator if known else None
 
     @property
     def weights_sha256(self) -> str:
@@ -194,8 +211,9 @@ class Planner:
             candidates=config.candidates,
         )
         watch = _Stages(progress, cancelled)
-        motions = self._sample(request, watch)
-        chosen, report = self._choose(motions, request, robot, watch)
+        texts, frames = timeline(request, self._pipeline.fps)
+        motions = self._sample(request, texts, frames, watch)
+        chosen, match, report = self._choose(motions, texts, request, robot, watch)
         trajectory = watch.run(
             "retargeting", lambda: build_trajectory(robot, motions[chosen], config.control_rate)
         )
@@ -210,16 +228,18 @@ class Planner:
             report=report,
             timings_s=watch.timings(),
             candidate=chosen,
+            text_match=match,
             scheduler=config.scheduler,
         )
 
-    def _sample(self, request: MotionRequest, watch: _Stages) -> tuple[Motion, ...]:
+    def _sample(
+        self, request: MotionRequest, texts: tuple[TimedText, ...], frames: int, watch: _Stages
+    ) -> tuple[Motion, ...]:
         assert request.guidance_scale is not None
         assert request.steps is not None
         assert request.candidates is not None
         assert request.seed is not None
         watch.enter("text")
-        texts, frames = timeline(request, self._pipeline.fps)
         samples = self._pipeline(
             texts,
             frames,
@@ -235,29 +255,43 @@ class Planner:
         return tuple(put_on_floor(motion) for motion in samples.motions)
 
     def _choose(
-        self, motions: tuple[Motion, ...], request: MotionRequest, robot: Robot, watch: _Stages
-    ) -> tuple[int, Report]:
-        """Return the most plausible candidate and its full report."""
+        self,
+        motions: tuple[Motion, ...],
+        texts: tuple[TimedText, ...],
+        request: MotionRequest,
+        robot: Robot,
+        watch: _Stages,
+    ) -> tuple[int, float | None, Report]:
+        """Return the best candidate, its match with the texts and its full report."""
 
-        def judge() -> tuple[int, Report]:
-            best, score = 0, -1.0
-            if len(motions) > 1:
-                for i, motion in enumerate(motions):
-                    quick = assess(motion, robot=robot, track=False, cancelled=watch.cancelled)
-                    if quick.score > score:
-                        best, score = i, quick.score
-                    watch.advance("physics", 0.6 * (i + 1) / len(motions), quick.verdict)
-            report = assess(
-                motions[best],
-                segments=request.segments,
-                robot=robot,
-                track=self.config.track,
-                cancelled=watch.cancelled,
-            )
+        def judge() -> tuple[int, float | None, Report]:
+            matches = self._matches(motions, texts)
+            reports: list[Report] = []
+            for motion in motions:
+                report = assess(
+                    motion,
+                    segments=request.segments,
+                    robot=robot,
+                    track=False,
+                    cancelled=watch.cancelled,
+                )
+                reports.append(report)
+                watch.advance("physics", 0.6 * len(reports) / len(motions), report.verdict)
+            best = choose(matches, [report.score for report in reports])
+            report = reports[best]
+            if self.config.track:
+                report = with_tracking(report, motions[best], cancelled=watch.cancelled)
             watch.advance("physics", 1.0, report.verdict)
-            return best, report
+            return best, matches[best], report
 
         return watch.run("physics", judge)
+
+    def _matches(
+        self, motions: tuple[Motion, ...], texts: tuple[TimedText, ...]
+    ) -> list[float | None]:
+        if self._evaluator is None:
+            return [None] * len(motions)
+        return text_matches(self._evaluator, self._pipeline.representation, motions, texts)
 
 
 def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...], int]:
@@ -318,7 +352,3 @@ class _Stages:
     def timings(self) -> dict[str, float]:
         rounded = {stage: round(seconds, 4) for stage, seconds in self._seconds.items()}
         return {**rounded, "total": round(time.perf_counter() - self._began, 4)}
-
-
-def _write_json(data: dict[str, Any], path: Path) -> None:
-    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")

@@ -34,6 +34,8 @@ class Train:
     """The paper's architecture (needs --text-encoder) instead of the default one."""
     text_encoder: Path | None = None
     """Folder of CLIP's files, for --paper."""
+    evaluator: Path | None = None
+    """Folder of an evaluator, to align the text layers with its space (see docs/training.md)."""
     layers: int = DenoiserConfig.layers
     """Decoder layers."""
     width: int = DenoiserConfig.width
@@ -63,21 +65,29 @@ def main(arguments: Sequence[str]) -> int:
     )
     denoiser.validate()
     from motiondiffuse_ros.corpus.store import Corpus
+    from motiondiffuse_ros.evaluation.evaluator import Evaluator
     from motiondiffuse_ros.text import load_text_encoder
     from motiondiffuse_ros.training.trainer import Trainer, TrainProgress
 
     corpus = Corpus.load(options.corpus)
+    encoder = load_text_encoder(denoiser.text_encoder, options.text_encoder)
+    evaluator = (
+        None
+        if options.evaluator is None
+        else Evaluator.from_pretrained(options.evaluator, load_text_encoder("minilm"))
+    )
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console) as bar:
         captions = bar.add_task("captions", total=None)
         trainer = Trainer(
             corpus,
-            load_text_encoder(denoiser.text_encoder, options.text_encoder),
+            encoder,
             denoiser,
             options.training,
             options.out,
             resume=options.resume,
+            evaluator=evaluator,
             on_captions=lambda done, total: bar.update(captions, completed=done, total=total),
         )
         task = bar.add_task("training", total=options.training.minutes)

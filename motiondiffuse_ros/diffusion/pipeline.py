@@ -95,6 +95,11 @@ class MotionPipeline:
         return self._checkpoint.denoiser.config.max_frames
 
     @property
+    def encoder(self) -> TextEncoder:
+        """The frozen text encoder."""
+        return self._encoder
+
+    @property
     def representation(self) -> Representation:
         """What the model's features mean."""
         return self._representation

@@ -73,7 +73,7 @@ class EvaluatorTraining:
     batch_size: int = 128
     learning_rate: float = 4e-4
     weight_decay: float = 0.05
-    statements: float = 0.2
+    statements: float = 0.3
     seed: int = 0
 
     def validate(self) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,7 +15,9 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics.criteria import CRITERIA
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE, Limits, Series, measure
-from motiondiffuse_ros.physics.tracking import Tracking, track
+from motiondiffuse_ros.physics.tracking import track
+
+_ASSESSED = 0.2  # share of the work that is done before the simulation
 
 PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
 
@@ -87,6 +91,10 @@ class Report:
         """Return what `report.json` holds."""
         return asdict(self)
 
+    def save(self, path: Path) -> None:
+        """Write `report.json`."""
+        path.write_text(json.dumps(self.to_dict(), indent=2) + "\n", encoding="utf-8")
+
 
 def assess(
     motion: Motion,
@@ -123,23 +131,43 @@ def assess(
     _check(cancelled)
     values, verdict, reasons = judge(measures)
     metrics: dict[str, float | None] = dict.fromkeys(METRICS)
-    metrics |= _plain_metrics(measures) | values
-    if progress is not None:
-        progress(0.2 if track else 1.0)
-    if track:
-        tracking = _track(motion, cancelled, progress)
-        metrics["time_to_fall_s"] = tracking.time_to_fall
-        metrics["tracking_mpjpe_mm"] = tracking.mpjpe
-        if tracking.diverged:
-            verdict = IMPLAUSIBLE
-            reasons = (*reasons, f"its simulation diverged at {tracking.time_to_fall:.2f} s")
-    return Report(
+    report = Report(
         verdict=verdict,
         reasons=reasons,
         score=_score(values),
-        metrics=metrics,
+        metrics=metrics | _plain_metrics(measures) | values,
         segments=tuple(_segment(segment, measures) for segment in segments),
     )
+    if progress is not None:
+        progress(_ASSESSED if track else 1.0)
+    if not track:
+        return report
+    rest = None if progress is None else lambda x: progress(_ASSESSED + (1.0 - _ASSESSED) * x)
+    return with_tracking(report, motion, cancelled=cancelled, progress=rest)
+
+
+def with_tracking(
+    report: Report,
+    motion: Motion,
+    *,
+    cancelled: Callable[[], bool] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Report:
+    """Add to a motion's report what its simulation under a PD controller shows.
+
+    Raises:
+        Cancelled: If `cancelled` says so.
+    """
+    tracking = track(motion, cancelled=cancelled, progress=progress)
+    metrics = {
+        **report.metrics,
+        "time_to_fall_s": tracking.time_to_fall,
+        "tracking_mpjpe_mm": tracking.mpjpe,
+    }
+    if not tracking.diverged:
+        return replace(report, metrics=metrics)
+    reason = f"its simulation diverged at {tracking.time_to_fall:.2f} s"
+    return replace(report, metrics=metrics, verdict=IMPLAUSIBLE, reasons=(*report.reasons, reason))
 
 
 def judge(
@@ -202,15 +230,6 @@ def _score(values: Mapping[str, float]) -> float:
     """
     shares = np.array([values[c.name] / c.implausible for c in CRITERIA])
     return float(1.0 / (1.0 + np.sqrt(np.sum(shares**4))))
-
-
-def _track(
-    motion: Motion,
-    cancelled: Callable[[], bool] | None,
-    progress: Callable[[float], None] | None,
-) -> Tracking:
-    report = None if progress is None else (lambda share: progress(0.2 + 0.8 * share))
-    return track(motion, cancelled=cancelled, progress=report)
 
 
 def _unjudged(reason: str) -> Report:

@@ -26,6 +26,8 @@ class TrainConfig:
         position_weight: Weight of the loss on joint positions by forward kinematics.
         velocity_weight: Weight of the loss on joint velocities by forward kinematics.
         slide_weight: Weight of the loss on feet that move while in contact.
+        alignment_weight: Weight of the loss that draws the pooled text towards the evaluator's text
+            space; used if the trainer is given an evaluator.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.
         seed: Of initial weights, batches and noise.
@@ -41,11 +43,12 @@ class TrainConfig:
     gradient_clip: float = 1.0
     condition_dropout: float = 0.1
     mirror: float = 0.5
-    statements: float = 0.2
+    statements: float = 0.3
     difference_weight: float = 3.0
     position_weight: float = 0.5
     velocity_weight: float = 0.3
     slide_weight: float = 0.3
+    alignment_weight: float = 0.2
     ema_decay: float = 0.999
     bf16: bool = True
     seed: int = 0

@@ -21,7 +21,9 @@ from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.process import make_scheduler
 from motiondiffuse_ros.errors import CheckpointError
+from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.text import TextEncoder
+from motiondiffuse_ros.training.alignment import TextAlignment
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions
@@ -68,6 +70,7 @@ class Trainer:
         out: Path,
         *,
         resume: bool = False,
+        evaluator: Evaluator | None = None,
         on_captions: Callable[[int, int], None] | None = None,
     ) -> None:
         config.validate()
@@ -93,7 +96,13 @@ class Trainer:
                 f"{out} holds a run already; add --resume or choose another --out"
             )
         train, val = corpus.split("train"), corpus.split("val")
-        self._captions = CaptionStates(all_captions((*train, *val)), encoder, on_captions)
+        texts = all_captions((*train, *val))
+        self._captions = CaptionStates(texts, encoder, on_captions)
+        self._alignment = (
+            None
+            if evaluator is None
+            else TextAlignment(evaluator, texts, denoiser_config.time_width)
+        )
         settings = {
             "max_frames": denoiser_config.max_frames,
             "mirror": config.mirror,
@@ -116,7 +125,7 @@ class Trainer:
         rate, lap = 0.0, time.monotonic()
         try:
             while self._seconds < 60.0 * config.minutes:
-                losses = self._train_step(next(self._windows))
+                losses, alignment = self._train_step(next(self._windows))
                 self._step += 1
                 total = losses.features.item()
                 mean_loss = total if mean_loss == 0.0 else 0.98 * mean_loss + 0.02 * total
@@ -125,7 +134,7 @@ class Trainer:
                 rate, lap = (speed if rate == 0.0 else 0.95 * rate + 0.05 * speed), now
                 self._seconds = before + now - began
                 if self._step % 20 == 0:
-                    self._log(writer, losses, rate)
+                    self._log(writer, losses, alignment, rate)
                 if self._step % config.validate_steps == 0:
                     validation = self.validate()
                     writer.add_scalar("validation/plain", validation, self._step)
@@ -150,7 +159,7 @@ class Trainer:
         self._ema.copy_to(parameters)
         self._denoiser.eval()
         generator = torch.Generator().manual_seed(_VALIDATION_SEED)
-        total = [self._forward(b, generator, 0.0).plain.item() for b in self._validation]
+        total = [self._forward(b, generator, 0.0)[0].plain.item() for b in self._validation]
         self._denoiser.train()
         self._ema.restore(parameters)
         return sum(total) / len(total)
@@ -176,27 +185,28 @@ class Trainer:
         torch.save(state, partial)
         partial.replace(self._out / STATE_FILE)  # a stop while writing leaves the last one whole
 
-    def _train_step(self, batch: WindowBatch) -> Losses:
+    def _train_step(self, batch: WindowBatch) -> tuple[Losses, Tensor]:
         for group in self._optimizer.param_groups:
             group["lr"] = self._learning_rate()
-        losses = self._forward(batch, None, self._config.condition_dropout)
+        losses, alignment = self._forward(batch, None, self._config.condition_dropout)
         total = (
             losses.features
             + self._config.difference_weight * losses.difference
             + self._config.position_weight * losses.position
             + self._config.velocity_weight * losses.velocity
             + self._config.slide_weight * losses.slide
+            + self._config.alignment_weight * alignment
         )
         self._optimizer.zero_grad(set_to_none=True)
         total.backward()
         torch.nn.utils.clip_grad_norm_(self._denoiser.parameters(), self._config.gradient_clip)
         self._optimizer.step()
         self._ema.step(self._denoiser.parameters())
-        return losses
+        return losses, alignment
 
     def _forward(
         self, batch: WindowBatch, generator: torch.Generator | None, dropout: float
-    ) -> Losses:
+    ) -> tuple[Losses, Tensor]:
         clean = batch.features
         noise = torch.randn(clean.shape, generator=generator)
         steps = torch.randint(self._denoiser.config.train_steps, (len(clean),), generator=generator)
@@ -208,7 +218,10 @@ class Trainer:
             conditioning = self._denoiser.condition(tokens.states, tokens.mask)
             output = self._denoiser(noisy, steps, batch.lengths, conditioning)
         predicted = self._to_clean(output, noisy, steps)
-        return self._loss(predicted, clean, batch.lengths, self._step)
+        losses = self._loss(predicted, clean, batch.lengths, self._step)
+        if self._alignment is None:
+            return losses, torch.zeros(())
+        return losses, self._alignment(conditioning.pooled, texts)
 
     def _to_clean(self, output: Tensor, noisy: Tensor, steps: Tensor) -> Tensor:
         kind = self._denoiser.config.prediction_type
@@ -258,8 +271,9 @@ class Trainer:
         }
         (self._out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
 
-    def _log(self, writer: SummaryWriter, losses: Losses, rate: float) -> None:
+    def _log(self, writer: SummaryWriter, losses: Losses, alignment: Tensor, rate: float) -> None:
         values = {name: value.item() for name, value in vars(losses).items()}
+        values["alignment"] = alignment.item()
         for name, value in values.items():
             writer.add_scalar(f"training/{name}", value, self._step)
         writer.add_scalar("training/windows_per_second", rate, self._step)

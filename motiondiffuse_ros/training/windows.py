@@ -150,7 +150,7 @@ def clip_probabilities(clips: Sequence[Clip], max_frames: int) -> np.ndarray:
     takes = Counter((clip.dataset, clip.captions) for clip in clips)
     weight = np.array(
         [
-            np.sqrt(min(clip.frames, max_frames) / takes[clip.dataset, clip.captions])
+            np.sqrt(min(clip.frames, max_frames)) * takes[clip.dataset, clip.captions] ** -0.5
             for clip in clips
         ]
     )

@@ -1,0 +1,65 @@
+"""The choice among candidates: what was asked for first, then what a body can do.
+
+Plausibility alone prefers whoever does least: the candidate that stands still breaks no law of
+physics. So only candidates that match the texts about as well as the best one are compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from motiondiffuse_ros.diffusion.composition import TimedText
+from motiondiffuse_ros.evaluation.evaluator import Evaluator
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion.features import Representation
+
+MATCH_MARGIN = 0.1
+"""Candidates whose match is less than this below the best one's are as good as it."""
+
+_MIN_FRAMES = 20
+
+
+def text_matches(
+    evaluator: Evaluator,
+    representation: Representation,
+    motions: Sequence[Motion],
+    texts: Sequence[TimedText],
+) -> list[float | None]:
+    """Return how well each candidate does what whole-body texts ask for.
+
+    Args:
+        evaluator: Trained on `representation`.
+        representation: Encodes the motions.
+        motions: Candidates at the frame rate of `texts`.
+        texts: Of the request; those on parts, of less than a second or empty are not judged.
+
+    Returns:
+        Cosine of text and motion in the evaluator's space, the mean over texts weighted by their
+        duration, -1 to 1; None for all if no text can be judged.
+    """
+    judged = [t for t in texts if not t.parts and t.stop - t.start >= _MIN_FRAMES and t.text]
+    if not judged:
+        return [None] * len(motions)
+    text = evaluator.embed_texts([t.text for t in judged])
+    frames = np.array([t.stop - t.start for t in judged], dtype=float)
+    pieces = [
+        representation.encode(motion.slice(t.start, t.stop)) for motion in motions for t in judged
+    ]
+    embedded = evaluator.embed_motions(pieces).reshape(len(motions), len(judged), -1)
+    cosines = (embedded * text).sum(axis=-1)
+    return [float(row @ frames / frames.sum()) for row in cosines]
+
+
+def choose(matches: Sequence[float | None], scores: Sequence[float]) -> int:
+    """Return the index of the most plausible among the candidates that match well.
+
+    Args:
+        matches: `text_matches`.
+        scores: Plausibility of each, higher is better.
+    """
+    known = [match for match in matches if match is not None]
+    least = max(known) - MATCH_MARGIN if known else None
+    good = [i for i, m in enumerate(matches) if least is None or m is None or m >= least]
+    return max(good, key=lambda i: scores[i])

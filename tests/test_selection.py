@@ -1,0 +1,54 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from motiondiffuse_ros.corpus.importer import load_motion
+from motiondiffuse_ros.diffusion.composition import TimedText
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.selection import MATCH_MARGIN, choose, text_matches
+from motiondiffuse_ros.text import load_text_encoder
+
+MATCHES = st.lists(st.one_of(st.none(), st.floats(-1, 1)), min_size=1, max_size=8)
+
+
+@given(MATCHES, st.randoms())
+def test_the_choice_matches_well_and_none_that_does_is_more_plausible(matches, random):
+    scores = [random.random() for _ in matches]
+    chosen = choose(matches, scores)
+    known = [m for m in matches if m is not None]
+    least = max(known, default=-2.0) - MATCH_MARGIN
+    good = [s for m, s in zip(matches, scores, strict=True) if m is None or m >= least]
+    assert matches[chosen] is None or matches[chosen] >= least
+    assert scores[chosen] == max(good)
+
+
+def test_standing_still_does_not_win_by_being_plausible():
+    assert choose([0.1, 0.6, 0.55], [0.9, 0.2, 0.3]) == 2
+
+
+def test_without_a_match_the_most_plausible_wins():
+    assert choose([None, None], [0.1, 0.2]) == 1
+
+
+def test_real_clips_match_their_own_words_and_side_best(real_paths):
+    clips = {p.stem.split("_")[1]: load_motion(p).resample(20.0) for p in real_paths}
+    evaluator = Evaluator.from_pretrained(shipped_evaluator(), load_text_encoder("minilm"))
+    asked = {
+        "wave-right-hand": "a person waves with the right hand",
+        "raise-up-left-hand": "a person raises the left hand",
+        "walk-turn-right": "a person walks and turns right",
+    }
+    for kind, text in asked.items():
+        own = clips[kind]
+        candidates = [own, own.mirrored(), clips["bow"]]
+        frames = min(m.frames for m in candidates)
+        whole = (TimedText(text, 0, frames),)
+        matches = text_matches(evaluator, PoseState(), candidates, whole)
+        assert max(range(3), key=lambda i: matches[i]) == 0, (kind, matches)
+
+
+def test_texts_on_parts_and_short_ones_are_not_judged(real_paths):
+    motion = load_motion(real_paths[0]).resample(20.0)
+    evaluator = Evaluator.from_pretrained(shipped_evaluator(), load_text_encoder("minilm"))
+    texts = (TimedText("waves", 0, 40, ("right_arm",)), TimedText("a person bows", 0, 10))
+    assert text_matches(evaluator, PoseState(), [motion], texts) == [None]
