@@ -102,7 +102,8 @@ class Plan:
         report: Physics verdict on the motion.
         timings_s: Seconds for text, sampling, physics, retargeting and total.
         candidate: Index of the chosen candidate.
-        text_match: How well it matches the texts, -1 to 1; None where that cannot be judged.
+        text_match: How well it matches the texts (`selection.text_matches`), -2 to 2; None where
+            that cannot be judged.
         scheduler: Sampler that was used.
     """
 

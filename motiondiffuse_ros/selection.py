@@ -10,15 +10,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import Representation
 
-MATCH_MARGIN = 0.1
+MATCH_MARGIN = 0.05
 """Candidates whose match is less than this below the best one's are as good as it."""
 
 _MIN_FRAMES = 20
+_SAME = 0.9  # a statement this near to the text says the same
 
 
 def text_matches(
@@ -36,20 +38,25 @@ def text_matches(
         texts: Of the request; those on parts, of less than a second or empty are not judged.
 
     Returns:
-        Cosine of text and motion in the evaluator's space, the mean over texts weighted by their
-        duration, -1 to 1; None for all if no text can be judged.
+        By how much the motion is nearer to its text, in cosine, than to any statement that says
+        something else (`corpus.statements`): a body that stands still is near to every quiet
+        text, but nearest to "stands still". The mean over texts weighted by their duration, -2 to
+        2; None for all if no text can be judged.
     """
     judged = [t for t in texts if not t.parts and t.stop - t.start >= _MIN_FRAMES and t.text]
     if not judged:
         return [None] * len(motions)
     text = evaluator.embed_texts([t.text for t in judged])
+    others = evaluator.embed_texts(all_statements())
+    same = text @ others.T > _SAME
     frames = np.array([t.stop - t.start for t in judged], dtype=float)
     pieces = [
         representation.encode(motion.slice(t.start, t.stop)) for motion in motions for t in judged
     ]
     embedded = evaluator.embed_motions(pieces).reshape(len(motions), len(judged), -1)
-    cosines = (embedded * text).sum(axis=-1)
-    return [float(row @ frames / frames.sum()) for row in cosines]
+    nearest = np.where(same, -1.0, embedded @ others.T).max(axis=-1)
+    lead = (embedded * text).sum(axis=-1) - nearest
+    return [float(row @ frames / frames.sum()) for row in lead]
 
 
 def choose(matches: Sequence[float | None], scores: Sequence[float]) -> int:
