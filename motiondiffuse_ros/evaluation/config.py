@@ -61,6 +61,8 @@ class EvaluatorTraining:
     Attributes:
         minutes: Training time of the text-motion evaluator.
         action_minutes: Training time of the action recogniser.
+        steps: Steps of each of the two instead of minutes, for a run that can be repeated to the
+            bit; 0 goes by time.
         batch_size: Pairs a step; the others of a batch are the wrong answers.
         learning_rate: Peak of the cosine schedule.
         weight_decay: Of AdamW.
@@ -70,6 +72,7 @@ class EvaluatorTraining:
 
     minutes: float = 12.0
     action_minutes: float = 4.0
+    steps: int = 0
     batch_size: int = 128
     learning_rate: float = 4e-4
     weight_decay: float = 0.05
@@ -81,6 +84,8 @@ class EvaluatorTraining:
         for name in ("minutes", "action_minutes", "learning_rate"):
             if not getattr(self, name) > 0:
                 raise InputError(f"evaluator {name} must be positive, got {getattr(self, name)}")
+        if self.steps < 0:
+            raise InputError(f"evaluator steps must be 0 or more, got {self.steps}")
         if self.batch_size < 2:
             raise InputError(f"evaluator batch_size must be at least 2, got {self.batch_size}")
         if not 0.0 <= self.statements <= 1.0:

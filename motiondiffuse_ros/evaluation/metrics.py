@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, eigvalsh
 
-from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.rotations import Array, Indices
 
 POOL = 32
 TOPS = (1, 2, 3)
@@ -28,7 +28,7 @@ class Estimate:
         return cls(float(np.mean(values)), 1.96 * spread / float(np.sqrt(len(values))))
 
 
-def pools(texts: Sequence[str], rng: np.random.Generator, size: int = POOL) -> Iterator[Array]:
+def pools(texts: Sequence[str], rng: np.random.Generator, size: int = POOL) -> Iterator[Indices]:
     """Yield indices of random disjoint pools in which no two texts are the same.
 
     Two equal texts in a pool would make a right answer count as wrong; such pools are skipped.

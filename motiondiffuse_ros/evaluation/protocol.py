@@ -24,7 +24,7 @@ from motiondiffuse_ros.evaluation.metrics import (
 from motiondiffuse_ros.evaluation.plausibility import plausibility
 from motiondiffuse_ros.evaluation.sources import MotionSource
 from motiondiffuse_ros.evaluation.tally import Row, Tally
-from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.rotations import Array, Indices
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def _embed(evaluator: Evaluator, items: Sequence[Item]) -> Array:
     return evaluator.embed_motions([item.features for item in items])
 
 
-def _right_answers(text: Array, motion: Array, drawn: Sequence[Array]) -> dict[str, float]:
+def _right_answers(text: Array, motion: Array, drawn: Sequence[Indices]) -> dict[str, float]:
     """Return how well the motions answer their own texts, over pools."""
     ranked = [retrieval(text[pool], motion[pool]) for pool in drawn]
     precision = np.mean([tops for tops, _ in ranked], axis=0)
@@ -164,7 +164,7 @@ def _multimodality(
     repeated = [int(i) for i in chosen for _ in range(protocol.samples)]
     motions = source.motions([texts[i] for i in repeated], [frames[i] for i in repeated], seed)
     embedded = evaluator.embed_motions(motions).reshape(len(chosen), protocol.samples, -1)
-    return multimodality(embedded, np.random.default_rng(seed))
+    return multimodality(list(embedded), np.random.default_rng(seed))
 
 
 def _physics(corpus: Corpus, features: Sequence[Array]) -> dict[str, float]:

@@ -147,8 +147,13 @@ def _fit(
         module.parameters(), lr=training.learning_rate, weight_decay=training.weight_decay
     )
     module.train()
-    began, mean = time.monotonic(), 0.0
-    while (done := (time.monotonic() - began) / (60.0 * minutes)) < 1.0:
+    began, mean, step = time.monotonic(), 0.0, 0
+    while True:
+        elapsed = (time.monotonic() - began) / (60.0 * minutes)
+        done = step / training.steps if training.steps else elapsed
+        if done >= 1.0:
+            return
+        step += 1
         warmup = min(1.0, done / 0.02 + 0.01)
         for group in optimizer.param_groups:
             group["lr"] = training.learning_rate * warmup * 0.5 * (1.0 + math.cos(math.pi * done))

@@ -54,9 +54,7 @@ def encoder():
 
 @pytest.fixture(scope="session")
 def evaluator(made_corpus, encoder):
-    """Trained for a few seconds."""
+    """Trained for 200 steps."""
     config = EvaluatorConfig(width=32, motion_layers=1, text_layers=1, space=16, dropout=0.0)
-    training = EvaluatorTraining(
-        minutes=0.12, action_minutes=0.06, batch_size=24, learning_rate=3e-3, statements=0.0
-    )
+    training = EvaluatorTraining(steps=200, batch_size=24, learning_rate=3e-3, statements=0.0)
     return train_evaluator(made_corpus, encoder, config, training)
