@@ -74,6 +74,11 @@ class Trainer:
         on_captions: Callable[[int, int], None] | None = None,
     ) -> None:
         config.validate()
+        if corpus.representation.name != denoiser_config.representation:
+            raise CheckpointError(
+                f"the denoiser speaks {denoiser_config.representation}, the corpus holds "
+                f"{corpus.representation.name}, which cannot be trained on yet"
+            )
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)

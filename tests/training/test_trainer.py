@@ -13,7 +13,7 @@ from motiondiffuse_ros.corpus.statistics import compute_statistics
 from motiondiffuse_ros.corpus.store import Corpus, pack_clips
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.errors import CheckpointError, InputError
-from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState
 from motiondiffuse_ros.text import load_text_encoder
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
@@ -70,6 +70,13 @@ def test_resuming_nothing_or_something_broken_is_refused(corpus, encoder, tmp_pa
     (tmp_path / STATE_FILE).write_bytes(b"PK broken")
     with pytest.raises(CheckpointError, match="cannot be resumed"):
         Trainer(corpus, encoder, SMALL, CONFIG, tmp_path, resume=True)
+
+
+def test_a_corpus_of_another_representation_is_refused(corpus, encoder, tmp_path):
+    other = replace(corpus, representation=REPRESENTATIONS["humanml3d"]())
+    with pytest.raises(CheckpointError, match="the corpus holds humanml3d"):
+        Trainer(other, encoder, SMALL, CONFIG, tmp_path)
+    assert not any(tmp_path.iterdir())
 
 
 def test_mirrored_windows_have_mirrored_features_and_words(corpus):
