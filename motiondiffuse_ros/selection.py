@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.motion import Motion
@@ -47,7 +46,7 @@ def text_matches(
     if not judged:
         return [None] * len(motions)
     text = evaluator.embed_texts([t.text for t in judged])
-    others = evaluator.embed_texts(all_statements())
+    others = evaluator.statements
     same = text @ others.T > _SAME
     frames = np.array([t.stop - t.start for t in judged], dtype=float)
     pieces = [

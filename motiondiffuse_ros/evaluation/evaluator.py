@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import torch
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 
+from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
@@ -55,6 +57,11 @@ class Evaluator:
     representation: str
     encoder: TextEncoder = field(repr=False)
     sha256: str = ""
+
+    @cached_property
+    def statements(self) -> Array:
+        """Unit vectors of all statements [S, space]; they are the same for every request."""
+        return self.embed_texts(all_statements())
 
     @torch.inference_mode()
     def embed_texts(self, texts: Sequence[str]) -> Array:

@@ -79,11 +79,8 @@ class NearestCaption:
         return answers
 
     def _pooled(self, texts: Sequence[str]) -> Array:
-        rows = []
-        for start in range(0, len(texts), 256):
-            tokens = self._encoder.encode(texts[start : start + 256])
-            mean = tokens.states.sum(1) / tokens.mask.sum(1, keepdim=True)
-            rows.append((mean / mean.norm(dim=1, keepdim=True)).numpy())
+        starts = range(0, len(texts), 256)
+        rows = [self._encoder.encode(texts[s : s + 256]).pooled().numpy() for s in starts]
         return np.concatenate(rows)
 
 

@@ -57,11 +57,7 @@ def train_evaluator(
         text = network.embed_text(tokens.states, tokens.mask)
         motion = network.embed_motion(batch.features, batch.lengths)
         logits = network.log_scale.clamp(max=4.0).exp() * (text @ motion.T)
-        pooled = F.normalize(
-            (tokens.states * tokens.mask[..., None]).sum(1) / tokens.mask.sum(1, keepdim=True),
-            dim=-1,
-        )
-        logits = logits.masked_fill(not_wrong(batch, pooled), -1e4)
+        logits = logits.masked_fill(not_wrong(batch, tokens.pooled()), -1e4)
         own = torch.arange(len(logits))
         return 0.5 * (F.cross_entropy(logits, own) + F.cross_entropy(logits.T, own))
 

@@ -21,6 +21,11 @@ class TokenStates:
     states: torch.Tensor
     mask: torch.Tensor
 
+    def pooled(self) -> torch.Tensor:
+        """Return the unit vector of each sentence's mean state [N, D]."""
+        mean = self.states.sum(1) / self.mask.sum(1, keepdim=True)
+        return torch.nn.functional.normalize(mean, dim=-1)
+
 
 class TextEncoder(Protocol):
     """A frozen language model that gives a state per token.
