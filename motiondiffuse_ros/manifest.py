@@ -7,6 +7,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+
 from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.hashing import file_sha256
 
@@ -64,3 +68,24 @@ def read_manifest(
                 f"(SHA-256 {sha256[:12]}…, {CONFIG_FILE} says {expected[:12]}…)"
             )
     return config
+
+
+def save_weights(module: torch.nn.Module, path: Path, dtype: torch.dtype = torch.float16) -> None:
+    """Write a module's tensors in `dtype`."""
+    tensors = {k: v.detach().to(dtype).contiguous() for k, v in module.state_dict().items()}
+    save_file(tensors, path)
+
+
+def load_weights(module: torch.nn.Module, path: Path, *, what: str) -> None:
+    """Read tensors into a module, which stays in float32 and goes into evaluation mode.
+
+    Raises:
+        CheckpointError: If the file is not one of tensors of the module's names and shapes.
+    """
+    try:
+        module.load_state_dict({k: v.float() for k, v in load_file(path).items()})
+    except (OSError, SafetensorError, RuntimeError) as error:
+        raise CheckpointError(
+            f"{what} {path.parent}: {path.name} does not fit its {CONFIG_FILE} ({error})"
+        ) from error
+    module.eval()

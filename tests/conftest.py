@@ -7,6 +7,7 @@ import tarfile
 from pathlib import Path
 
 import pytest
+from small_evaluator import encoder, evaluator, made_corpus  # noqa: F401  (fixtures)
 
 REAL_CLIPS = {
     "cmu": ("02_01", "09_01", "13_11", "16_21", "111_17", "141_16"),

@@ -6,14 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import torch
-from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
 
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
-from motiondiffuse_ros.errors import CheckpointError
-from motiondiffuse_ros.manifest import CONFIG_FILE, read_manifest, write_manifest
+from motiondiffuse_ros.manifest import load_weights, read_manifest, save_weights, write_manifest
 
 FORMAT = 1
 MODEL_FILE = "model.safetensors"
@@ -39,11 +36,7 @@ class Checkpoint:
     def save_pretrained(self, folder: Path, dtype: torch.dtype = torch.float16) -> None:
         """Write the folder; weights in `dtype`."""
         folder.mkdir(parents=True, exist_ok=True)
-        tensors = {
-            name: value.detach().to(dtype).contiguous()
-            for name, value in self.denoiser.state_dict().items()
-        }
-        save_file(tensors, folder / MODEL_FILE)
+        save_weights(self.denoiser, folder / MODEL_FILE, dtype)
         self.statistics.save(folder / STATISTICS_FILE)
         config = {
             "format": FORMAT,
@@ -68,15 +61,9 @@ class Checkpoint:
             files=(MODEL_FILE, STATISTICS_FILE),
         )
         denoiser = Denoiser(DenoiserConfig.from_dict(config["denoiser"]))
-        try:
-            tensors = load_file(folder / MODEL_FILE)
-            denoiser.load_state_dict({k: v.float() for k, v in tensors.items()})
-        except (OSError, SafetensorError, RuntimeError) as error:
-            raise CheckpointError(
-                f"checkpoint {folder}: {MODEL_FILE} does not fit its {CONFIG_FILE} ({error})"
-            ) from error
+        load_weights(denoiser, folder / MODEL_FILE, what="checkpoint")
         return cls(
-            denoiser.eval(),
+            denoiser,
             Statistics.load(folder / STATISTICS_FILE),
             config["text_encoder_sha256"],
             config["files"][MODEL_FILE],

@@ -25,6 +25,8 @@ class SamplerConfig:
         scheduler: One of `SCHEDULERS`.
         steps: Denoising steps.
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
+        guidance_interval: Noise levels, as part of the training steps, between which guidance is
+            used (Kynkäänniemi et al. 2024); the conditional model alone does the rest.
         eta: Noise re-injected by DDIM, 0 to 1.
         bf16: Evaluate the denoiser under bfloat16 autocast.
     """
@@ -32,6 +34,7 @@ class SamplerConfig:
     scheduler: str = "ddim"
     steps: int = 30
     guidance_scale: float = 2.5
+    guidance_interval: tuple[float, float] = (0.0, 1.0)
     eta: float = 0.0
     bf16: bool = True
 
@@ -45,6 +48,16 @@ class SamplerConfig:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
         if not 0.0 <= self.eta <= 1.0:
             raise RequestError(f"eta must be from 0 to 1, got {self.eta}")
+        low, high = self.guidance_interval
+        if not 0.0 <= low < high <= 1.0:
+            raise RequestError(
+                f"guidance_interval must be two rising numbers from 0 to 1, got {low}, {high}"
+            )
+
+    def guidance_at(self, noise: float) -> float:
+        """Return the guidance scale at a noise level, 0 (clean) to 1."""
+        low, high = self.guidance_interval
+        return self.guidance_scale if low <= noise <= high else 1.0
 
 
 @torch.inference_mode()
@@ -125,8 +138,7 @@ def sample_batch(
     free = unconditional.expand(torch.zeros(len(lengths), dtype=torch.long))
 
     def predict(x: Tensor, step: int) -> Tensor:
-        steps = torch.full((len(x),), step, device=x.device)
-        return _guided(denoiser, config, x, steps, lengths, conditioning, free)
+        return _guided(denoiser, config, x, step, lengths, conditioning, free)
 
     return _denoise(predict, x, denoiser, config, generator)
 
@@ -164,13 +176,14 @@ def _guided(
     denoiser: Denoiser,
     config: SamplerConfig,
     noisy: Tensor,
-    steps: Tensor,
+    step: int,
     lengths: Tensor,
     condition: Conditioning,
     unconditional: Conditioning,
 ) -> Tensor:
     """Return the prediction under classifier-free guidance."""
-    scale = config.guidance_scale
+    scale = config.guidance_at(step / denoiser.config.train_steps)
+    steps = torch.full((len(noisy),), step, device=noisy.device)
     with torch.autocast(noisy.device.type, torch.bfloat16, enabled=config.bf16):
         conditional = denoiser(noisy, steps, lengths, condition)
         if scale == 1.0:
@@ -218,9 +231,8 @@ class _WindowedPrediction:
             for row, (w, c) in zip(noisy, batch, strict=True):
                 window = self._windows[w]
                 row[: len(self._weights[w])] = x[c, window.start : window.stop]
-            steps = torch.full((len(batch),), step, device=x.device)
             prediction = _guided(
-                self._denoiser, self._config, noisy, steps, lengths, condition, unconditional
+                self._denoiser, self._config, noisy, step, lengths, condition, unconditional
             )
             for row, (w, c) in zip(prediction, batch, strict=True):
                 window, weight = self._windows[w], self._weights[w]

@@ -10,15 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
 
 from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.statistics import Statistics
-from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
+from motiondiffuse_ros.errors import TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
-from motiondiffuse_ros.manifest import read_manifest, write_manifest
+from motiondiffuse_ros.manifest import load_weights, read_manifest, save_weights, write_manifest
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder
 
@@ -108,9 +106,8 @@ class Evaluator:
     def save_pretrained(self, folder: Path) -> None:
         """Write the folder; weights in float16."""
         folder.mkdir(parents=True, exist_ok=True)
-        for name, module in ((_NETWORK, self.network), (_ACTIONS, self.recogniser)):
-            tensors = {k: v.detach().half().contiguous() for k, v in module.state_dict().items()}
-            save_file(tensors, folder / name)
+        save_weights(self.network, folder / _NETWORK)
+        save_weights(self.recogniser, folder / _ACTIONS)
         self.statistics.save(folder / _STATISTICS)
         config = {
             "format": FORMAT,
@@ -145,17 +142,11 @@ class Evaluator:
         config = EvaluatorConfig.from_dict(manifest["evaluator"])
         actions = tuple(manifest["actions"])
         network, recogniser = TextMotionNetwork(config), ActionNetwork(config, len(actions))
-        for name, module in ((_NETWORK, network), (_ACTIONS, recogniser)):
-            try:
-                tensors = load_file(folder / name)
-                module.load_state_dict({k: v.float() for k, v in tensors.items()})
-            except (OSError, SafetensorError, RuntimeError) as error:
-                raise CheckpointError(
-                    f"evaluator {folder}: {name} does not fit its configuration ({error})"
-                ) from error
+        load_weights(network, folder / _NETWORK, what="evaluator")
+        load_weights(recogniser, folder / _ACTIONS, what="evaluator")
         return cls(
-            network.eval(),
-            recogniser.eval(),
+            network,
+            recogniser,
             actions,
             Statistics.load(folder / _STATISTICS),
             manifest["representation"],

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
@@ -50,7 +49,6 @@ class SimNode(Node):
                 assisted=settings["root"] == "assisted", approach_s=settings["approach_seconds"]
             ),
         )
-        group = MutuallyExclusiveCallbackGroup()
         self._joints: JointTrajectory | None = None
         self._root: MultiDOFJointTrajectory | None = None
         self.create_subscription(
@@ -58,14 +56,12 @@ class SimNode(Node):
             "motiondiffuse/joint_trajectory",
             self._on_joints,
             LATCHED,
-            callback_group=group,
         )
         self.create_subscription(
             MultiDOFJointTrajectory,
             "motiondiffuse/root_trajectory",
             self._on_root,
             LATCHED,
-            callback_group=group,
         )
         self._state = StatePublisher(self, self._robot)
         self._execution = ExecutionStatus(self, self._robot)
@@ -75,7 +71,6 @@ class SimNode(Node):
         self.create_timer(
             1.0 / settings["publish_rate"],
             self._tick,
-            group,
             clock=Clock(clock_type=ClockType.STEADY_TIME),
         )
         how = "held on its path by an outside force" if self._robot.config.assisted else "free"
@@ -143,7 +138,7 @@ def _open_window(node: Node, robot: SimulatedRobot) -> Any:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node; returns the exit code."""
-    return run_node(SimNode, args, threads=2)
+    return run_node(SimNode, args, threads=1)
 
 
 if __name__ == "__main__":

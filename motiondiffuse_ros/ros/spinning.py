@@ -11,7 +11,11 @@ from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import (
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
@@ -34,7 +38,8 @@ def run_node(
     Args:
         create: Makes the node, once rclpy is up.
         args: Command line with `--ros-args`; the process's own if None.
-        threads: Of the executor.
+        threads: Of the executor. With one, everything that is ready gets its turn; with more, a
+            timer that is always late keeps the rest of its callback group waiting for ever.
         finish: Ends the node's work while it can still answer its clients.
 
     Returns:
@@ -55,7 +60,7 @@ def run_node(
         print(f"parameter refused: {error}", file=sys.stderr)
         rclpy.try_shutdown()
         return 2
-    executor = MultiThreadedExecutor(num_threads=threads)
+    executor = SingleThreadedExecutor() if threads == 1 else MultiThreadedExecutor(threads)
     executor.add_node(node)
     try:
         while not stop.is_set():

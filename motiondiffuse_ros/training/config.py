@@ -28,6 +28,7 @@ class TrainConfig:
         slide_weight: Weight of the loss on feet that move while in contact.
         alignment_weight: Weight of the loss that draws the pooled text towards the evaluator's text
             space; used if the trainer is given an evaluator.
+        snr_limit: Largest weight of windows with little noise; 1 weighs all noise levels alike.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.
         seed: Of initial weights, batches and noise.
@@ -37,7 +38,7 @@ class TrainConfig:
 
     minutes: float = 105.0
     batch_size: int = 64
-    learning_rate: float = 4e-4
+    learning_rate: float = 5e-4
     warmup_steps: int = 200
     weight_decay: float = 0.01
     gradient_clip: float = 1.0
@@ -46,9 +47,10 @@ class TrainConfig:
     statements: float = 0.3
     difference_weight: float = 3.0
     position_weight: float = 0.5
-    velocity_weight: float = 0.3
-    slide_weight: float = 0.3
+    velocity_weight: float = 0.5
+    slide_weight: float = 0.6
     alignment_weight: float = 0.2
+    snr_limit: float = 5.0
     ema_decay: float = 0.999
     bf16: bool = True
     seed: int = 0
@@ -61,6 +63,8 @@ class TrainConfig:
         for name in positive:
             if not getattr(self, name) > 0:
                 raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
+        if not self.snr_limit >= 1.0:
+            raise InputError(f"training snr_limit must be at least 1, got {self.snr_limit}")
         for name in ("condition_dropout", "mirror", "statements", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")

@@ -66,7 +66,9 @@ class MotionLoss:
         self._kinematics = PoseStateKinematics()
         self._fps = fps
 
-    def __call__(self, predicted: Tensor, true: Tensor, lengths: Tensor, phase: int) -> Losses:
+    def __call__(
+        self, predicted: Tensor, true: Tensor, lengths: Tensor, phase: int, weight: Tensor
+    ) -> Losses:
         """Return the losses.
 
         Args:
@@ -74,17 +76,20 @@ class MotionLoss:
             true: The same, of the data.
             lengths: Frames that count [B].
             phase: Which of every `_PAIR_STEP` frames carry the losses by forward kinematics.
+            weight: Of each window [B]; `plain` ignores it.
         """
         mask = pad_mask(lengths, true.shape[1])
         squared = (predicted - true).square()
-        features = (squared @ self._weight)[mask].mean()
+        by_frame = weight[:, None].expand(mask.shape)
+        features = (squared @ self._weight * by_frame)[mask].mean()
         plain = squared.detach().mean(-1)[mask].mean()
         step = (predicted[:, 1:] - predicted[:, :-1]) - (true[:, 1:] - true[:, :-1])
-        difference = (step.square() @ self._weight)[mask[:, 1:]].mean()
-        return Losses(features, difference, *self._kinematic(predicted, true, mask, phase), plain)
+        difference = (step.square() @ self._weight * by_frame[:, 1:])[mask[:, 1:]].mean()
+        kinematic = self._kinematic(predicted, true, mask, phase, by_frame)
+        return Losses(features, difference, *kinematic, plain)
 
     def _kinematic(
-        self, predicted: Tensor, true: Tensor, mask: Tensor, phase: int
+        self, predicted: Tensor, true: Tensor, mask: Tensor, phase: int, by_frame: Tensor
     ) -> tuple[Tensor, Tensor, Tensor]:
         first = torch.arange(phase % _PAIR_STEP, true.shape[1] - 1, _PAIR_STEP)
         keep = mask[:, first + 1]
@@ -92,15 +97,17 @@ class MotionLoss:
         here, there = self._kinematics.positions(torch.cat(pairs)).chunk(2)
         velocities = self._kinematics.velocities(pairs[0], here, there, self._fps)
         now, then = true[:, first][keep], true[:, first + 1][keep]
+        weight = by_frame[:, first][keep]
         position = 0.5 * (
-            self._error(here, now, self._positions) + self._error(there, then, self._positions)
+            self._error(here, now, self._positions, weight)
+            + self._error(there, then, self._positions, weight)
         )
         truth = (now * self._std + self._mean)[:, self._velocities].unflatten(1, (-1, 3))
         contacts = (now * self._std + self._mean)[:, self._contacts] > 0.5
         feet = (velocities - truth)[:, CONTACT_POSITIONS].norm(dim=-1)
-        slide = (feet * contacts).sum() / contacts.sum().clamp(min=1)
-        return position, self._error(velocities, now, self._velocities), slide
+        slide = (feet * contacts * weight[:, None]).sum() / contacts.sum().clamp(min=1)
+        return position, self._error(velocities, now, self._velocities, weight), slide
 
-    def _error(self, values: Tensor, true: Tensor, block: slice) -> Tensor:
+    def _error(self, values: Tensor, true: Tensor, block: slice, weight: Tensor) -> Tensor:
         normalised = (values.flatten(1) - self._mean[block]) / self._std[block]
-        return (normalised - true[:, block]).square().mean()
+        return ((normalised - true[:, block]).square().mean(-1) * weight).mean()

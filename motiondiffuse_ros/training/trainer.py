@@ -223,10 +223,20 @@ class Trainer:
             conditioning = self._denoiser.condition(tokens.states, tokens.mask)
             output = self._denoiser(noisy, steps, batch.lengths, conditioning)
         predicted = self._to_clean(output, noisy, steps)
-        losses = self._loss(predicted, clean, batch.lengths, self._step)
+        weight = self._noise_weight(steps)
+        losses = self._loss(predicted, clean, batch.lengths, self._step, weight)
         if self._alignment is None:
             return losses, torch.zeros(())
         return losses, self._alignment(conditioning.pooled, texts)
+
+    def _noise_weight(self, steps: Tensor) -> Tensor:
+        """Return the weight of windows at these steps: their signal-to-noise ratio, within limits.
+
+        Min-SNR weighting (Hang et al. 2023) for clean features, but never under 1: what the text
+        decides is decided where noise prevails, while steps and hands are refined where it is low.
+        """
+        alpha = self._scheduler.alphas_cumprod[steps]
+        return (alpha / (1 - alpha)).clamp(1.0, self._config.snr_limit)
 
     def _to_clean(self, output: Tensor, noisy: Tensor, steps: Tensor) -> Tensor:
         kind = self._denoiser.config.prediction_type

@@ -145,12 +145,12 @@ def clip_probabilities(clips: Sequence[Clip], max_frames: int) -> np.ndarray:
 
     Data sets have equal shares. Within one a clip counts by the square root of its length (a
     minute-long clip holds more, but its captions say less), and n clips that share their captions
-    count as the square root of n: four hundred takes of one gesture would crowd out the bow.
+    count as n to the power 0.3: four hundred takes of one gesture would crowd out the bow.
     """
     takes = Counter((clip.dataset, clip.captions) for clip in clips)
     weight = np.array(
         [
-            np.sqrt(min(clip.frames, max_frames)) * takes[clip.dataset, clip.captions] ** -0.5
+            np.sqrt(min(clip.frames, max_frames)) * takes[clip.dataset, clip.captions] ** -0.7
             for clip in clips
         ]
     )

@@ -3,9 +3,10 @@ import json
 import pytest
 import torch
 
-from motiondiffuse_ros.diffusion.checkpoint import CONFIG_FILE, MODEL_FILE, Checkpoint
+from motiondiffuse_ros.diffusion.checkpoint import MODEL_FILE, Checkpoint
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
+from motiondiffuse_ros.manifest import CONFIG_FILE
 from motiondiffuse_ros.text import load_text_encoder
 
 

@@ -4,18 +4,22 @@ import torch
 
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
+
+
+def _conditioning(denoiser, texts):
+    generator = torch.Generator().manual_seed(3)
+    states = torch.randn(texts, 5, denoiser.config.text_dim, generator=generator)
+    with torch.inference_mode():
+        return denoiser.condition(states, torch.ones(states.shape[:2], dtype=torch.bool))
 
 
 def _sample(denoiser, *, windows=None, frames=40, candidates=2, seed=0, steps=4, **settings):
     callbacks = {k: settings.pop(k) for k in ("on_step", "cancelled") if k in settings}
     dim = denoiser.config.feature_dim
     windows = windows or [Window("a", 0, np.ones((frames, dim)))]
-    generator = torch.Generator().manual_seed(3)
-    states = torch.randn(len(windows) + 1, 5, denoiser.config.text_dim, generator=generator)
-    with torch.inference_mode():
-        every = denoiser.condition(states, torch.ones(states.shape[:2], dtype=torch.bool))
+    every = _conditioning(denoiser, len(windows) + 1)
     return sample(
         denoiser,
         windows,
@@ -73,6 +77,34 @@ def test_values_that_are_not_finite_are_an_error(denoiser):
         denoiser.head.out.bias.fill_(float("nan"))
     with pytest.raises(SamplingError, match="not finite"):
         _sample(denoiser)
+
+
+def test_guidance_is_used_at_its_noise_levels_only(denoiser):
+    unguided = _sample(denoiser, guidance_scale=1.0)
+    # four steps are at 0.25, 0.5, 0.75 and 1 of the noise
+    unused = _sample(denoiser, guidance_scale=4.0, guidance_interval=(0.0, 0.2))
+    assert torch.equal(unused, unguided)
+    partly = _sample(denoiser, guidance_scale=4.0, guidance_interval=(0.4, 0.6))
+    wholly = _sample(denoiser, guidance_scale=4.0)
+    assert not torch.allclose(partly, unguided, atol=1e-3)
+    assert not torch.allclose(partly, wholly, atol=1e-3)
+
+
+@pytest.mark.parametrize("interval", [(0.5, 0.5), (-0.1, 1.0), (0.0, 1.1), (0.9, 0.1)])
+def test_bad_guidance_intervals_are_refused(interval):
+    with pytest.raises(RequestError, match="guidance_interval must be two rising numbers"):
+        SamplerConfig(guidance_interval=interval).validate()
+
+
+def test_a_batch_of_one_is_a_window_over_everything(denoiser):
+    conditioning = _conditioning(denoiser, 2)
+    text, free = (conditioning.expand(torch.tensor([i])) for i in (0, 1))
+    config = SamplerConfig(steps=4, bf16=False)
+    lengths = torch.tensor([40])
+    batch = sample_batch(denoiser, lengths, text, free, config, seed=0)
+    window = [Window("a", 0, np.ones((40, denoiser.config.feature_dim)))]
+    alone = sample(denoiser, window, text, free, config, frames=40, candidates=1, seed=0)
+    torch.testing.assert_close(batch, alone, atol=1e-5, rtol=1e-5)
 
 
 def test_unknown_scheduler_lists_the_known(denoiser):

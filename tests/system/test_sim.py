@@ -75,3 +75,16 @@ def test_it_follows_a_trajectory_and_refuses_a_broken_one(graph):
     clock = [c.clock.sec + c.clock.nanosec * 1e-9 for c in planner.received["clock"]]
     assert (np.diff(clock) >= 0.0).all()
     assert sim.returncode == 0
+
+
+def test_a_sim_that_cannot_keep_up_still_takes_trajectories(graph):
+    trajectory = build_trajectory(get_robot("humanoid"), waving(40))
+    # every tick then takes longer than its period
+    arguments = ros_arguments(real_time_factor=20.0, publish_rate=1000.0)
+    log = graph / "sim.log"
+    with running(MODULE, arguments, log) as sim, Planner(lambda: sim.poll() is None) as planner:
+        planner.wait(lambda: all(planner.received.values()), START, "the robot's state")
+        for _ in range(3):
+            stamp = planner.publish(trajectory)
+            values = planner.wait_for_execution(stamp, lambda status: None, ANSWER)
+            assert values["fallen"] == "False"

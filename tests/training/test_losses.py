@@ -17,9 +17,9 @@ def _features(motion):
     return torch.from_numpy(STATE.encode(motion)).float()
 
 
-def _loss(predicted, true, fps):
-    lengths = torch.tensor([len(true)])
-    return MotionLoss(STATE, PLAIN, fps)(predicted[None], true[None], lengths, 0)
+def _loss(predicted, true, fps, weight=1.0):
+    lengths, weights = torch.tensor([len(true)]), torch.tensor([weight])
+    return MotionLoss(STATE, PLAIN, fps)(predicted[None], true[None], lengths, 0, weights)
 
 
 def test_velocities_by_kinematics_are_those_of_real_clips(real_paths):
@@ -55,3 +55,13 @@ def test_a_root_that_glides_over_planted_feet_costs_its_speed():
     assert losses.slide.item() == pytest.approx(0.5, rel=1e-3)
     assert losses.velocity.item() == pytest.approx(0.5**2 / 3, rel=1e-3)
     assert losses.position.item() == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_weight_scales_all_but_the_plain_loss(real_paths):
+    motion = load_motion(real_paths[0])
+    true = _features(motion)[:-1]
+    predicted = true + 0.1 * torch.randn(true.shape, generator=torch.Generator().manual_seed(0))
+    once, thrice = (vars(_loss(predicted, true, motion.fps, weight)) for weight in (1.0, 3.0))
+    for name, value in once.items():
+        factor = 1.0 if name == "plain" else 3.0
+        torch.testing.assert_close(thrice[name], factor * value, rtol=1e-4, atol=1e-6)

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
+from made_corpus import corpus_of
 from synthetic import moved, standing, waving
 
-from motiondiffuse_ros.corpus.statistics import compute_statistics
-from motiondiffuse_ros.corpus.store import Corpus, pack_clips
+from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig, EvaluatorTraining
 from motiondiffuse_ros.evaluation.training import train_evaluator
-from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.text import load_text_encoder
 
 FRAMES = 48
@@ -23,11 +22,9 @@ def _gliding(speed):
 @pytest.fixture(scope="session")
 def made_corpus() -> Corpus:
     """40 clips a split: standing, waving with either hand, gliding ahead at various speeds."""
-    state = PoseState()
     entries = []
     for split in ("train", "val", "test"):
         for i in range(10):
-            speed = 0.5 + 0.1 * i
             kinds = {
                 "stand": (f"a person stands for the {i} th time", standing(FRAMES)),
                 "wave-right-hand": (f"a person waves the right hand in way {i}", waving(FRAMES)),
@@ -35,15 +32,13 @@ def made_corpus() -> Corpus:
                     f"a person waves the left hand in way {i}",
                     waving(FRAMES).mirrored(),
                 ),
-                "glide": (f"a person glides forward at speed {i}", _gliding(speed)),
+                "glide": (f"a person glides forward at speed {i}", _gliding(0.5 + 0.1 * i)),
             }
             entries += [
-                (f"dataset-1_{kind}_{split}_{i:03d}", "made", split, (text,), state.encode(motion))
+                (f"dataset-1_{kind}_{split}_{i:03d}", split, text, motion)
                 for kind, (text, motion) in kinds.items()
             ]
-    clips, features = pack_clips(entries)
-    statistics = compute_statistics([e[4] for e in entries], state)
-    return Corpus(clips, features, statistics, state, 20.0, {})
+    return corpus_of(entries)
 
 
 @pytest.fixture(scope="session")
