@@ -37,20 +37,23 @@ class Rule:
 _OTHER = {"left": "right", "right": "left"}
 
 
-def _gone(motion: Motion) -> np.ndarray:
+def travel(motion: Motion) -> np.ndarray:
+    """Return the way from the first root position to the last [3]."""
     return motion.root[-1] - motion.root[0]
 
 
-def _path(motion: Motion) -> float:
+def path_length(motion: Motion) -> float:
+    """Return the length of the root's way over the floor."""
     return float(np.linalg.norm(np.diff(motion.root[:, :2], axis=0), axis=1).sum())
 
 
-def _height(motion: Motion, joint: str) -> np.ndarray:
+def height(motion: Motion, joint: str) -> np.ndarray:
+    """Return the height of a joint [T]."""
     return motion.joint(joint)[:, 2]
 
 
-def _speed(motion: Motion, joint: str) -> np.ndarray:
-    """Speed of a joint relative to the pelvis, smoothed over three frames [T - 2]."""
+def joint_speed(motion: Motion, joint: str) -> np.ndarray:
+    """Return the speed of a joint relative to the pelvis, smoothed over three frames [T - 2]."""
     place = motion.joint(joint) - motion.root
     return np.linalg.norm(place[2:] - place[:-2], axis=1) * motion.fps / 2.0
 
@@ -65,7 +68,7 @@ def goes_ahead(least: float, most: float = np.inf) -> Rule:
     """Ends ahead of the start, and further ahead than aside."""
     return Rule(
         f"ends over {least} m ahead, less aside",
-        lambda m: least < _gone(m)[0] < most and abs(_gone(m)[1]) < _gone(m)[0],
+        lambda m: least < travel(m)[0] < most and abs(travel(m)[1]) < travel(m)[0],
     )
 
 
@@ -73,7 +76,7 @@ def goes_back(least: float) -> Rule:
     """Ends behind the start, and further behind than aside."""
     return Rule(
         f"ends over {least} m behind, less aside",
-        lambda m: _gone(m)[0] < -least and abs(_gone(m)[1]) < -_gone(m)[0],
+        lambda m: travel(m)[0] < -least and abs(travel(m)[1]) < -travel(m)[0],
     )
 
 
@@ -82,19 +85,19 @@ def goes_aside(side: str, least: float = 0.3) -> Rule:
     sign = 1.0 if side == "left" else -1.0
     return Rule(
         f"ends over {least} m to the {side}, less ahead",
-        lambda m: sign * _gone(m)[1] > max(least, abs(_gone(m)[0])),
+        lambda m: sign * travel(m)[1] > max(least, abs(travel(m)[0])),
     )
 
 
 def speed_is(least: float, most: float = np.inf) -> Rule:
     """The mean speed along the way lies between two bounds."""
     words = f"{least} m/s or faster" if most == np.inf else f"{least} to {most} m/s"
-    return Rule(words, lambda m: least <= _path(m) / m.duration <= most)
+    return Rule(words, lambda m: least <= path_length(m) / m.duration <= most)
 
 
 def stays(most: float = 0.6) -> Rule:
     """Ends near the start."""
-    return Rule(f"ends within {most} m", lambda m: float(np.linalg.norm(_gone(m)[:2])) < most)
+    return Rule(f"ends within {most} m", lambda m: float(np.linalg.norm(travel(m)[:2])) < most)
 
 
 def turns(side: str, least: float, most: float = np.inf) -> Rule:
@@ -117,9 +120,9 @@ def hand_up(side: str) -> Rule:
     """One wrist over its shoulder for half a second, the other one never over its own."""
 
     def holds(m: Motion) -> bool:
-        up = _height(m, f"{side}_wrist") > _height(m, f"{side}_shoulder")
+        up = height(m, f"{side}_wrist") > height(m, f"{side}_shoulder")
         other = _OTHER[side]
-        idle = _height(m, f"{other}_wrist") < _height(m, f"{other}_shoulder")
+        idle = height(m, f"{other}_wrist") < height(m, f"{other}_shoulder")
         return up.sum() >= 0.5 * m.fps and bool(idle.all())
 
     return Rule(f"{side} wrist over its shoulder, the other not", holds)
@@ -129,8 +132,8 @@ def both_hands_up() -> Rule:
     """Both wrists over the head at once for a quarter of a second."""
 
     def holds(m: Motion) -> bool:
-        head = _height(m, "head")
-        up = (_height(m, "left_wrist") > head) & (_height(m, "right_wrist") > head)
+        head = height(m, "head")
+        up = (height(m, "left_wrist") > head) & (height(m, "right_wrist") > head)
         return up.sum() >= 0.25 * m.fps
 
     return Rule("both wrists over the head", holds)
@@ -142,8 +145,8 @@ def limb_leads(joint: str, least: float) -> Rule:
     other = f"{_OTHER[side]}_{part}"
 
     def holds(m: Motion) -> bool:
-        fast = _speed(m, joint).max()
-        return fast > least and fast > 1.2 * _speed(m, other).max()
+        fast = joint_speed(m, joint).max()
+        return fast > least and fast > 1.2 * joint_speed(m, other).max()
 
     return Rule(f"{side} {part} over {least} m/s and faster than the other", holds)
 
@@ -152,7 +155,7 @@ def moves_fast(joints: tuple[str, ...], least: float) -> Rule:
     """One of some joints reaches a speed relative to the pelvis."""
     return Rule(
         f"{' or '.join(j.replace('_', ' ') for j in joints)} over {least} m/s",
-        lambda m: max(_speed(m, j).max() for j in joints) > least,
+        lambda m: max(joint_speed(m, j).max() for j in joints) > least,
     )
 
 
@@ -172,7 +175,7 @@ def arms_spread() -> Rule:
 
     def holds(m: Motion) -> bool:
         apart = np.linalg.norm(m.joint("left_wrist") - m.joint("right_wrist"), axis=1)
-        level = [abs(_height(m, f"{s}_wrist") - _height(m, f"{s}_shoulder")) < 0.35 for s in _OTHER]
+        level = [abs(height(m, f"{s}_wrist") - height(m, f"{s}_shoulder")) < 0.35 for s in _OTHER]
         return bool(((apart > 1.1) & level[0] & level[1]).any())
 
     return Rule("wrists over 1.1 m apart at shoulder height", holds)
@@ -182,8 +185,8 @@ def foot_up(side: str, least: float) -> Rule:
     """One foot gets high, and higher than the other."""
 
     def holds(m: Motion) -> bool:
-        own = _height(m, f"{side}_foot").max()
-        return own > least and own > _height(m, f"{_OTHER[side]}_foot").max()
+        own = height(m, f"{side}_foot").max()
+        return own > least and own > height(m, f"{_OTHER[side]}_foot").max()
 
     return Rule(f"{side} foot over {least} m and higher than the other", holds)
 
@@ -192,7 +195,7 @@ def jumps(times: int = 1) -> Rule:
     """Both feet well off the floor at once while the pelvis is above its height at the start."""
 
     def holds(m: Motion) -> bool:
-        feet = np.minimum(_height(m, "left_foot"), _height(m, "right_foot"))
+        feet = np.minimum(height(m, "left_foot"), height(m, "right_foot"))
         rest = np.median(feet[: max(3, m.frames // 10)])
         up = (feet > rest + 0.08) & (m.root[:, 2] > m.root[0, 2] + 0.03)
         return int((up[1:] & ~up[:-1]).sum()) >= times
@@ -204,7 +207,7 @@ def steps_in_turn(times: int) -> Rule:
     """The feet are lifted by turns."""
 
     def holds(m: Motion) -> bool:
-        left, right = _height(m, "left_foot"), _height(m, "right_foot")
+        left, right = height(m, "left_foot"), height(m, "right_foot")
         higher = np.sign(np.where(abs(left - right) > 0.06, left - right, 0.0))
         lifted = higher[higher != 0.0]
         return int((lifted[1:] != lifted[:-1]).sum()) >= times
@@ -216,7 +219,7 @@ def nods_down(least: float) -> Rule:
     """The head sinks and comes up again."""
 
     def holds(m: Motion) -> bool:
-        head = _height(m, "head")
+        head = height(m, "head")
         lowest = int(np.argmin(head))
         return bool(head[0] - head[lowest] > least and head[lowest:].max() - head[lowest] > 0.1)
 
@@ -234,7 +237,7 @@ def hand_reaches_down(most: float) -> Rule:
     """A wrist comes near the floor."""
     return Rule(
         f"a wrist under {most} m",
-        lambda m: min(_height(m, "left_wrist").min(), _height(m, "right_wrist").min()) < most,
+        lambda m: min(height(m, "left_wrist").min(), height(m, "right_wrist").min()) < most,
     )
 
 
@@ -242,7 +245,7 @@ def on_toes() -> Rule:
     """The lower heel is far above the floor for most of the time."""
 
     def holds(m: Motion) -> bool:
-        heel = np.minimum(_height(m, "left_ankle"), _height(m, "right_ankle"))
+        heel = np.minimum(height(m, "left_ankle"), height(m, "right_ankle"))
         return float((heel > 0.11).mean()) > 0.5
 
     return Rule("lower ankle over 11 cm for half the time", holds)

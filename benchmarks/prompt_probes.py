@@ -10,22 +10,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import tyro
 from rich.console import Console
-from rich.progress import track
 from rich.table import Table
 
 from benchmarks.free_prompts import FREE_PROMPTS
+from benchmarks.sampled_prompts import Sampling, sample_prompts
 from motiondiffuse_ros.motion import Motion
-from motiondiffuse_ros.planner import Planner, PlannerConfig
 from motiondiffuse_ros.render import contact_sheet
-from motiondiffuse_ros.request import MotionRequest
-
-SECONDS = 5.0
 
 
 @dataclass(frozen=True)
@@ -49,22 +45,13 @@ class Options:
 
     free: bool = False
     """The prompts of `free_prompts` instead of the six."""
-    weights: Path | None = None
-    """Checkpoint folder; the shipped one if not given."""
-    seeds: int = 8
-    """Seeds 0 to this, exclusive."""
-    candidates: int = PlannerConfig.candidates
-    """Candidates a plan chooses from; 1 judges the bare sampler."""
-    guidance_scale: float = PlannerConfig.guidance_scale
-    """Weight of the text."""
-    steps: int = PlannerConfig.steps
-    """Denoising steps."""
     json: Path | None = None
     """Where to write the counts."""
     sheet: Path | None = None
     """Where to draw one sample of each prompt."""
     sheet_seed: int = 0
     """Which seed the sheet shows."""
+    sampling: tyro.conf.OmitArgPrefixes[Sampling] = field(default_factory=Sampling)
 
 
 def travelled(motion: Motion) -> float:
@@ -143,41 +130,24 @@ def main() -> None:
     """Run the probes and print the table."""
     options = tyro.cli(Options)
     probes = FREE_PROBES if options.free else PROBES
-    planner = Planner(
-        PlannerConfig(
-            weights=options.weights,
-            candidates=options.candidates,
-            guidance_scale=options.guidance_scale,
-            steps=options.steps,
-            track=False,
-        )
-    )
-    motions: dict[str, list[Motion]] = {}
-    verdicts: dict[str, list[str]] = {}
-    jobs = [(probe, seed) for probe in probes for seed in range(options.seeds)]
-    for probe, seed in track(jobs, "sampling"):
-        plan = planner.plan(MotionRequest.from_text(probe.text, SECONDS, seed=seed))
-        motions.setdefault(probe.text, []).append(plan.motion)
-        verdicts.setdefault(probe.text, []).append(plan.report.verdict)
+    plans, settings = sample_prompts([probe.text for probe in probes], options.sampling)
+    motions = {text: [plan.motion for plan in own] for text, own in plans.items()}
     walk = float(np.mean([travelled(m) for m in motions[probes[0].text]]))
-    table = Table("prompt", "rule", f"holds of {options.seeds}", "plausible or marginal")
+    seeds = options.sampling.seeds
+    table = Table("prompt", "rule", f"holds of {seeds}", "plausible or marginal")
     rows = []
     for probe in probes:
         passed = [seed for seed, m in enumerate(motions[probe.text]) if probe.holds(m, walk)]
-        sound = sum(v != "implausible" for v in verdicts[probe.text])
+        sound = sum(p.report.verdict != "implausible" for p in plans[probe.text])
         table.add_row(probe.text, probe.rule, str(len(passed)), str(sound))
         rows.append({"text": probe.text, "passed": passed, "not_implausible": sound})
     Console().print(table)
     counts = [len(row["passed"]) for row in rows]
-    held, asked = sum(counts), options.seeds * len(rows)
+    held, asked = sum(counts), seeds * len(rows)
     print(f"{held} of {asked} samples hold ({held / asked:.1%}); least {min(counts)} of a prompt")
     if options.json is not None:
         result = {
-            "weights_sha256": planner.weights_sha256,
-            "seeds": options.seeds,
-            "candidates": options.candidates,
-            "guidance_scale": options.guidance_scale,
-            "steps": options.steps,
+            **settings,
             "walk_m": round(walk, 3),
             "held": held,
             "asked": asked,

@@ -39,11 +39,13 @@ class Window:
         text: The condition.
         start: First frame.
         weight: [frames, D] in [0, 1]; its share of every feature of its frames.
+        parts: Parts that the text was given to; empty is the whole body.
     """
 
     text: str
     start: int
     weight: Array = field(repr=False)
+    parts: tuple[str, ...] = ()
 
     @property
     def stop(self) -> int:
@@ -83,7 +85,7 @@ def compose(
         weight = np.zeros((frames, representation.dim))
         for part in text.parts:
             weight[:, representation.part_indices(part)] = ramp / scale[part]
-        windows += _cut(text.text, weight, max_frames, blend_frames)
+        windows += _cut(text, weight, max_frames, blend_frames)
 
     base = np.zeros((frames, representation.dim))
     for part in PARTS:
@@ -95,7 +97,9 @@ def compose(
     return tuple(windows)
 
 
-def _whole_body(texts: list[TimedText], frames: int, blend_frames: int) -> list[tuple[str, Array]]:
+def _whole_body(
+    texts: list[TimedText], frames: int, blend_frames: int
+) -> list[tuple[TimedText, Array]]:
     """Return texts with ramps [frames, 1] that sum to one; gaps stand still."""
     filled: list[TimedText] = []
     place = 0
@@ -108,7 +112,7 @@ def _whole_body(texts: list[TimedText], frames: int, blend_frames: int) -> list[
         filled.append(TimedText(STILL_TEXT, place, frames))
     ramps = [_ramp(t.start, t.stop, frames, blend_frames) for t in filled]
     total = np.maximum(sum(ramps), 1e-9)
-    return [(t.text, ramp / total) for t, ramp in zip(filled, ramps, strict=True)]
+    return [(t, ramp / total) for t, ramp in zip(filled, ramps, strict=True)]
 
 
 def _ramp(start: int, stop: int, frames: int, blend_frames: int) -> Array:
@@ -123,7 +127,7 @@ def _ramp(start: int, stop: int, frames: int, blend_frames: int) -> Array:
     return (np.ones(frames) * rise * fall)[:, None]
 
 
-def _cut(text: str, weight: Array, max_frames: int, blend_frames: int) -> list[Window]:
+def _cut(text: TimedText, weight: Array, max_frames: int, blend_frames: int) -> list[Window]:
     """Cut one text's weights to where they are not zero, and into windows of at most max_frames."""
     rows = np.flatnonzero(weight.any(axis=1))
     if len(rows) == 0:
@@ -131,7 +135,7 @@ def _cut(text: str, weight: Array, max_frames: int, blend_frames: int) -> list[W
     first, stop = int(rows[0]), int(rows[-1]) + 1
     length = stop - first
     if length <= max_frames:
-        return [Window(text, first, weight[first:stop])]
+        return [Window(text.text, first, weight[first:stop], text.parts)]
     # an inner piece is longer by half a blend at either end, and by a frame from rounding
     count = int(np.ceil(length / (max_frames - blend_frames - 1)))
     core = length / count
@@ -143,5 +147,5 @@ def _cut(text: str, weight: Array, max_frames: int, blend_frames: int) -> list[W
         kept = np.flatnonzero(ramp)
         a, b = int(kept[0]), int(kept[-1]) + 1
         piece = weight[first + a : first + b] * (ramp / total)[a:b, None]
-        windows.append(Window(text, first + a, piece))
+        windows.append(Window(text.text, first + a, piece, text.parts))
     return windows

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-import numpy as np
 import torch
 from torch import Tensor
 
 from motiondiffuse_ros.diffusion.composition import Window
+from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
-from motiondiffuse_ros.diffusion.process import SCHEDULERS, make_scheduler
+from motiondiffuse_ros.diffusion.process import SCHEDULERS, from_clean, make_scheduler, to_clean
+from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
-
-_BATCH_ROWS = 64  # bounds memory on long timelines with many candidates
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,9 @@ class SamplerConfig:
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
         guidance_interval: Noise levels, as part of the training steps, between which guidance is
             used (Kynkäänniemi et al. 2024); the conditional model alone does the rest.
+        part_correction: λ₁ of eq. 10: how far texts on different parts are drawn together, 0
+            (hard masks) to 1.
+        time_correction: λ₂ of eq. 11: the same of neighbours in time, where they overlap.
         eta: Noise re-injected by DDIM, 0 to 1.
         bf16: Evaluate the denoiser under bfloat16 autocast.
     """
@@ -35,6 +38,8 @@ class SamplerConfig:
     steps: int = 30
     guidance_scale: float = 2.5
     guidance_interval: tuple[float, float] = (0.0, 1.0)
+    part_correction: float = 0.0
+    time_correction: float = 0.0
     eta: float = 0.0
     bf16: bool = True
 
@@ -46,8 +51,9 @@ class SamplerConfig:
             )
         if not 1 <= self.steps <= 1000:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
-        if not 0.0 <= self.eta <= 1.0:
-            raise RequestError(f"eta must be from 0 to 1, got {self.eta}")
+        for name in ("part_correction", "time_correction", "eta"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise RequestError(f"{name} must be from 0 to 1, got {getattr(self, name)}")
         low, high = self.guidance_interval
         if not 0.0 <= low < high <= 1.0:
             raise RequestError(
@@ -71,6 +77,7 @@ def sample(
     frames: int,
     candidates: int,
     seed: int,
+    constraints: Sequence[Constraint] = (),
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
@@ -85,6 +92,7 @@ def sample(
         frames: Length of the motion.
         candidates: Independent samples.
         seed: Of all noise.
+        constraints: What the motion must keep to, met at every step and in the result.
         on_step: Called with (steps done, steps in all).
         cancelled: Asked before each step.
 
@@ -98,10 +106,17 @@ def sample(
     config.validate()
     generator = torch.Generator().manual_seed(seed)
     x = torch.randn((candidates, frames, denoiser.config.feature_dim), generator=generator)
-    predict = _WindowedPrediction(
-        denoiser, windows, conditioning, unconditional, config, candidates
+    predict = WindowedPrediction(
+        partial(_guided, denoiser, config),
+        windows,
+        conditioning,
+        unconditional,
+        candidates=candidates,
+        part_correction=config.part_correction,
+        time_correction=config.time_correction,
+        device=denoiser.device,
     )
-    return _denoise(predict, x, denoiser, config, generator, on_step, cancelled)
+    return _denoise(predict, x, denoiser, config, generator, constraints, on_step, cancelled)
 
 
 @torch.inference_mode()
@@ -140,7 +155,7 @@ def sample_batch(
     def predict(x: Tensor, step: int) -> Tensor:
         return _guided(denoiser, config, x, step, lengths, conditioning, free)
 
-    return _denoise(predict, x, denoiser, config, generator)
+    return _denoise(predict, x, denoiser, config, generator, ())
 
 
 def _denoise(
@@ -149,6 +164,7 @@ def _denoise(
     denoiser: Denoiser,
     config: SamplerConfig,
     generator: torch.Generator,
+    constraints: Sequence[Constraint],
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
@@ -161,9 +177,15 @@ def _denoise(
         if cancelled is not None and cancelled():
             raise Cancelled("canceled while sampling")
         output = predict(x, int(step))
+        if constraints:
+            alpha = scheduler.alphas_cumprod[int(step)].to(x)
+            kind = denoiser.config.prediction_type
+            clean = apply(constraints, to_clean(kind, output, x, alpha))
+            output = from_clean(kind, clean, x, alpha)
         x = scheduler.step(output, step, x, generator=generator, **extra).prev_sample  # type: ignore[arg-type, union-attr]
         if on_step is not None:
             on_step(done + 1, total)
+    x = apply(constraints, x)
     if not torch.isfinite(x).all():
         raise SamplingError(
             f"sampling gave values that are not finite (seed {generator.initial_seed()}, scheduler "
@@ -190,51 +212,3 @@ def _guided(
             return conditional
         free = denoiser(noisy, steps, lengths, unconditional)
     return free + scale * (conditional - free)
-
-
-class _WindowedPrediction:
-    """The denoiser's prediction for a whole timeline as the weighted sum over its windows."""
-
-    def __init__(
-        self,
-        denoiser: Denoiser,
-        windows: Sequence[Window],
-        conditioning: Conditioning,
-        unconditional: Conditioning,
-        config: SamplerConfig,
-        candidates: int,
-    ) -> None:
-        self._denoiser, self._windows, self._config = denoiser, windows, config
-        self._weights = [
-            torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(denoiser.device)
-            for w in windows
-        ]
-        rows = [(w, c) for w in range(len(windows)) for c in range(candidates)]
-        # windows of like length share a batch
-        rows.sort(key=lambda row: len(self._weights[row[0]]))
-        self._batches = [rows[i : i + _BATCH_ROWS] for i in range(0, len(rows), _BATCH_ROWS)]
-        self._conditions = [
-            conditioning.expand(torch.tensor([w for w, _ in batch])) for batch in self._batches
-        ]
-        self._unconditional = [
-            unconditional.expand(torch.zeros(len(batch), dtype=torch.long))
-            for batch in self._batches
-        ]
-
-    def __call__(self, x: Tensor, step: int) -> Tensor:
-        out = torch.zeros_like(x)
-        for batch, condition, unconditional in zip(
-            self._batches, self._conditions, self._unconditional, strict=True
-        ):
-            lengths = torch.tensor([len(self._weights[w]) for w, _ in batch], device=x.device)
-            noisy = x.new_zeros((len(batch), int(lengths.max()), x.shape[2]))
-            for row, (w, c) in zip(noisy, batch, strict=True):
-                window = self._windows[w]
-                row[: len(self._weights[w])] = x[c, window.start : window.stop]
-            prediction = _guided(
-                self._denoiser, self._config, noisy, step, lengths, condition, unconditional
-            )
-            for row, (w, c) in zip(prediction, batch, strict=True):
-                window, weight = self._windows[w], self._weights[w]
-                out[c, window.start : window.stop] += weight * row[: len(weight)]
-        return out

@@ -19,7 +19,7 @@ from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
-from motiondiffuse_ros.diffusion.process import make_scheduler
+from motiondiffuse_ros.diffusion.process import make_scheduler, to_clean
 from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.text import TextEncoder
@@ -222,30 +222,22 @@ class Trainer:
         with torch.autocast("cpu", torch.bfloat16, enabled=self._config.bf16):
             conditioning = self._denoiser.condition(tokens.states, tokens.mask)
             output = self._denoiser(noisy, steps, batch.lengths, conditioning)
-        predicted = self._to_clean(output, noisy, steps)
-        weight = self._noise_weight(steps)
+        alpha = self._scheduler.alphas_cumprod[steps]
+        kind = self._denoiser.config.prediction_type
+        predicted = to_clean(kind, output, noisy, alpha[:, None, None])
+        weight = self._noise_weight(alpha)
         losses = self._loss(predicted, clean, batch.lengths, self._step, weight)
         if self._alignment is None:
             return losses, torch.zeros(())
         return losses, self._alignment(conditioning.pooled, texts)
 
-    def _noise_weight(self, steps: Tensor) -> Tensor:
-        """Return the weight of windows at these steps: their signal-to-noise ratio, within limits.
+    def _noise_weight(self, alpha: Tensor) -> Tensor:
+        """Return the weight of windows by noise: their signal-to-noise ratio, within limits.
 
         Min-SNR weighting (Hang et al. 2023) for clean features, but never under 1: what the text
         decides is decided where noise prevails, while steps and hands are refined where it is low.
         """
-        alpha = self._scheduler.alphas_cumprod[steps]
         return (alpha / (1 - alpha)).clamp(1.0, self._config.snr_limit)
-
-    def _to_clean(self, output: Tensor, noisy: Tensor, steps: Tensor) -> Tensor:
-        kind = self._denoiser.config.prediction_type
-        if kind == "sample":
-            return output
-        alpha = self._scheduler.alphas_cumprod[steps][:, None, None]
-        if kind == "v_prediction":
-            return alpha.sqrt() * noisy - (1 - alpha).sqrt() * output
-        return (noisy - (1 - alpha).sqrt() * output) / alpha.sqrt()
 
     def _learning_rate(self) -> float:
         warmup = min(1.0, (self._step + 1) / max(self._config.warmup_steps, 1))

@@ -1,0 +1,40 @@
+"""What a sampled motion must keep to, imposed on the clean prediction at every denoising step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from torch import Tensor
+
+
+class Constraint(Protocol):
+    """Returns the nearest features that satisfy it, for a sensible meaning of near."""
+
+    def __call__(self, clean: Tensor) -> Tensor:
+        """Return normalised clean features [C, T, D] that satisfy it."""
+        ...
+
+
+def apply(constraints: Sequence[Constraint], clean: Tensor) -> Tensor:
+    """Impose constraints one after the other; the last one holds exactly."""
+    for constraint in constraints:
+        clean = constraint(clean)
+    return clean
+
+
+class KeptFeatures:
+    """Some features of some frames are given (imputation): edits, in-betweening, continuation."""
+
+    def __init__(self, values: Tensor, mask: Tensor) -> None:
+        """Take what is given.
+
+        Args:
+            values: Normalised features [T, D].
+            mask: [T, D] from 0 (free) to 1 (given); between them, a mixture.
+        """
+        self._values, self._mask = values, mask
+
+    def __call__(self, clean: Tensor) -> Tensor:
+        """Return clean features [C, T, D] with the given ones in their places."""
+        return clean + self._mask * (self._values - clean)

@@ -1,0 +1,162 @@
+"""One prediction for a whole timeline from the predictions of its windows (eq. 10 and eq. 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Protocol
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from motiondiffuse_ros.diffusion.composition import Window
+from motiondiffuse_ros.diffusion.denoiser import Conditioning
+
+_BATCH_ROWS = 64  # bounds memory on long timelines with many candidates
+
+
+class Predictor(Protocol):
+    """The denoiser under guidance, on a batch of windows."""
+
+    def __call__(
+        self,
+        noisy: Tensor,
+        step: int,
+        lengths: Tensor,
+        condition: Conditioning,
+        unconditional: Conditioning,
+    ) -> Tensor:
+        """Return the prediction [B, T, D] for noisy features [B, T, D]."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class _Pull:
+    """How strongly two windows' predictions are drawn together over the frames they share."""
+
+    one: int
+    other: int
+    start: int
+    stop: int
+    strength: Tensor
+    """[frames, 1]"""
+
+
+class WindowedPrediction:
+    """The weighted sum over windows, after a step that draws their predictions together.
+
+    The paper's correction terms leave open what their gradient is taken of. Here each window's
+    prediction goes down the gradient of half the squared distances to the predictions of windows
+    that share its frames, before it is weighted: with a step of one, windows that are fully there
+    meet at their mean. Texts on other parts are drawn by λ₁ (eq. 10), neighbours in time of the
+    same parts by λ₂ (eq. 11). Predictions of noise, clean features and velocity differ by factors
+    that all windows share, so the step means the same for each.
+    """
+
+    def __init__(
+        self,
+        predict: Predictor,
+        windows: Sequence[Window],
+        conditioning: Conditioning,
+        unconditional: Conditioning,
+        *,
+        candidates: int,
+        part_correction: float,
+        time_correction: float,
+        device: torch.device,
+    ) -> None:
+        """Lay out batches.
+
+        Args:
+            predict: The denoiser.
+            windows: Of the timeline; their weights sum to one.
+            conditioning: A row for each window.
+            unconditional: One row, of the empty text.
+            candidates: Independent samples.
+            part_correction: λ₁, 0 to 1.
+            time_correction: λ₂, 0 to 1.
+            device: Of the noisy features.
+        """
+        self._predict, self._windows, self._candidates = predict, windows, candidates
+        self._weights = [
+            torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(device)
+            for w in windows
+        ]
+        rows = [(w, c) for w in range(len(windows)) for c in range(candidates)]
+        # windows of like length share a batch
+        rows.sort(key=lambda row: len(self._weights[row[0]]))
+        self._batches = [rows[i : i + _BATCH_ROWS] for i in range(0, len(rows), _BATCH_ROWS)]
+        self._conditions = [
+            conditioning.expand(torch.tensor([w for w, _ in batch])) for batch in self._batches
+        ]
+        self._unconditional = [
+            unconditional.expand(torch.zeros(len(batch), dtype=torch.long))
+            for batch in self._batches
+        ]
+        self._pulls = _pulls(windows, part_correction, time_correction, device)
+
+    def __call__(self, x: Tensor, step: int) -> Tensor:
+        """Return the prediction [C, T, D] for noisy features x [C, T, D]."""
+        predictions = self._of_windows(x, step)
+        drawn = [torch.zeros_like(p) for p in predictions] if self._pulls else []
+        for pull in self._pulls:
+            a, b = (
+                slice(pull.start - self._windows[w].start, pull.stop - self._windows[w].start)
+                for w in (pull.one, pull.other)
+            )
+            step_together = pull.strength * (
+                predictions[pull.other][:, b] - predictions[pull.one][:, a]
+            )
+            drawn[pull.one][:, a] += step_together
+            drawn[pull.other][:, b] -= step_together
+        out = torch.zeros_like(x)
+        for w, window in enumerate(self._windows):
+            prediction = predictions[w] + drawn[w] if self._pulls else predictions[w]
+            out[:, window.start : window.stop] += self._weights[w] * prediction
+        return out
+
+    def _of_windows(self, x: Tensor, step: int) -> list[Tensor]:
+        """Return the prediction of each window [C, frames, D]."""
+        out = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
+        for batch, condition, unconditional in zip(
+            self._batches, self._conditions, self._unconditional, strict=True
+        ):
+            lengths = torch.tensor([len(self._weights[w]) for w, _ in batch], device=x.device)
+            noisy = x.new_zeros((len(batch), int(lengths.max()), x.shape[2]))
+            for row, (w, c) in zip(noisy, batch, strict=True):
+                window = self._windows[w]
+                row[: len(self._weights[w])] = x[c, window.start : window.stop]
+            prediction = self._predict(noisy, step, lengths, condition, unconditional)
+            for row, (w, c) in zip(prediction, batch, strict=True):
+                out[w][c] = row[: len(self._weights[w])]
+        return out
+
+
+def _pulls(
+    windows: Sequence[Window],
+    part_correction: float,
+    time_correction: float,
+    device: torch.device,
+) -> list[_Pull]:
+    # a window is there as far as its greatest weight says: pulls fade with the ramps, or the
+    # correction itself would make a seam where a window begins
+    presence = [w.weight.max(axis=1) for w in windows]
+    frames = max((w.stop for w in windows), default=0)
+    total = np.zeros(frames)
+    for window, p in zip(windows, presence, strict=True):
+        total[window.start : window.stop] += p
+    pulls = []
+    for a, b in combinations(range(len(windows)), 2):
+        one, other = windows[a], windows[b]
+        start, stop = max(one.start, other.start), min(one.stop, other.stop)
+        amount = time_correction if one.parts == other.parts else part_correction
+        if start >= stop or amount == 0.0:
+            continue
+        p = presence[a][start - one.start : stop - one.start]
+        q = presence[b][start - other.start : stop - other.start]
+        strength = amount * p * q / np.maximum(total[start:stop], 1.0)
+        column = torch.from_numpy(strength[:, None].astype(np.float32)).to(device)
+        pulls.append(_Pull(a, b, start, stop, column))
+    return pulls
