@@ -13,6 +13,7 @@ import yaml
 
 from motiondiffuse_ros.errors import RequestError
 from motiondiffuse_ros.motion.parts import PARTS
+from motiondiffuse_ros.timeline_text import parse_timeline
 
 
 @dataclass(frozen=True)
@@ -92,9 +93,29 @@ class MotionRequest:
         return max(s.end for s in self.segments) if self.duration is None else self.duration
 
     @classmethod
-    def from_text(cls, text: str, seconds: float | None = None, **settings: Any) -> MotionRequest:
-        """Ask for one text over the whole time and body."""
-        length = LIMITS.default_seconds if seconds is None else seconds
+    def from_text(
+        cls,
+        text: str,
+        seconds: float | None = None,
+        *,
+        default_seconds: float = LIMITS.default_seconds,
+        **settings: Any,
+    ) -> MotionRequest:
+        """Ask for one text over the whole time and body, or for a typed timeline.
+
+        Args:
+            text: In plain English, or in the form of `timeline_text`.
+            seconds: Length of the motion, s; None is that of the timeline or the default.
+            default_seconds: Length of a text without times, s.
+            **settings: Further fields.
+
+        Raises:
+            RequestError: If a timeline cannot be read.
+        """
+        pieces = parse_timeline(text)
+        if pieces is not None:
+            return cls(tuple(Segment(*piece) for piece in pieces), duration=seconds, **settings)
+        length = default_seconds if seconds is None else seconds
         return cls((Segment(text, 0.0, length),), duration=length, **settings)
 
     @classmethod

@@ -26,11 +26,11 @@ class Generate:
     """
 
     text: Annotated[str | None, tyro.conf.Positional] = None
-    """What to do, in plain English; or give --request."""
+    """What to do, in plain English, or "[0-4] walk ahead | right_arm[2-4]: wave"; or --request."""
     request: Path | None = None
     """YAML file with timed segments and body parts."""
     seconds: float | None = None
-    """Length of the motion of a text [s]."""
+    """Length of the motion [s]; 6 or, of a text with times, the end of the last."""
     seed: int | None = None
     """Of all randomness; drawn and recorded if not given."""
     candidates: int | None = None

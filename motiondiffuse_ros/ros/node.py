@@ -216,7 +216,7 @@ class MotionDiffuseNode(LifecycleNode):
             "~/text",
             lambda: MotionRequest.from_text(
                 message.data,
-                seconds=self.settings["default_seconds"],
+                default_seconds=self.settings["default_seconds"],
                 robot=self.settings["robot"],
             ),
         )

@@ -11,17 +11,21 @@ import pytest
 from motiondiffuse_ros.robots import get_robot
 
 
-@pytest.fixture(scope="module")
-def trajectory(node):
+def _answer(text):
     script = Path(__file__).with_name("text_publisher.py")
     run = subprocess.run(
-        [sys.executable, str(script), "a person walks forward"],
+        [sys.executable, str(script), text],
         check=True,
         capture_output=True,
         text=True,
         cwd="/",
     )
     return {key: np.array(value) for key, value in json.loads(run.stdout).items()}
+
+
+@pytest.fixture(scope="module")
+def trajectory(node):
+    return _answer("a person walks forward")
 
 
 def test_it_names_the_63_joints_of_the_humanoid(trajectory):
@@ -48,3 +52,10 @@ def test_positions_and_velocities_are_finite_and_inside_the_limits(trajectory):
 def test_it_moves_and_ends_at_rest(trajectory):
     assert np.ptp(trajectory["positions"], axis=0).max() > 0.1
     assert not trajectory["velocities"][-1].any()
+
+
+def test_a_typed_timeline_has_its_own_length(node):
+    times = _answer("[0-1.5] a person walks forward | [1.5-3] turns left | head[1-3]: nods")[
+        "times"
+    ]
+    assert 2.5 < times[-1] < 3.5
