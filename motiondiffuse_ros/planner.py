@@ -16,7 +16,7 @@ from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.bvh import write_bvh
 from motiondiffuse_ros.physics.repair import put_on_floor
@@ -166,16 +166,16 @@ class Planner:
         self._pipeline = MotionPipeline.from_pretrained(
             weights, config.text_encoder, device=config.device
         )
-        self._evaluator = self._load_evaluator()
+        self._critic = self._load_critic()
 
-    def _load_evaluator(self) -> Evaluator | None:
-        """Return the shipped evaluator, if it speaks of the same features and text encoder."""
+    def _load_critic(self) -> Evaluator | None:
+        """Return the shipped critic, if it speaks of the same features and text encoder."""
         encoder = self._pipeline.encoder
         if encoder.name != EvaluatorConfig.text_encoder:
             return None
-        evaluator = Evaluator.from_pretrained(shipped_evaluator(), encoder)
-        known = evaluator.representation == self._pipeline.representation.name
-        return evaluator if known else None
+        critic = Evaluator.from_pretrained(shipped_critic(), encoder)
+        known = critic.representation == self._pipeline.representation.name
+        return critic if known else None
 
     @property
     def weights_sha256(self) -> str:
@@ -290,9 +290,9 @@ class Planner:
     def _matches(
         self, motions: tuple[Motion, ...], texts: tuple[TimedText, ...]
     ) -> list[float | None]:
-        if self._evaluator is None:
+        if self._critic is None:
             return [None] * len(motions)
-        return text_matches(self._evaluator, self._pipeline.representation, motions, texts)
+        return text_matches(self._critic, self._pipeline.representation, motions, texts)
 
 
 def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...], int]:

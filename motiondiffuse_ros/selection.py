@@ -23,7 +23,7 @@ _SAME = 0.9  # a statement this near to the text says the same
 
 
 def text_matches(
-    evaluator: Evaluator,
+    critic: Evaluator,
     representation: Representation,
     motions: Sequence[Motion],
     texts: Sequence[TimedText],
@@ -31,7 +31,7 @@ def text_matches(
     """Return how well each candidate does what whole-body texts ask for.
 
     Args:
-        evaluator: Trained on `representation`.
+        critic: Trained on `representation`.
         representation: Encodes the motions.
         motions: Candidates at the frame rate of `texts`.
         texts: Of the request; those on parts, of less than a second or empty are not judged.
@@ -45,14 +45,14 @@ def text_matches(
     judged = [t for t in texts if not t.parts and t.stop - t.start >= _MIN_FRAMES and t.text]
     if not judged:
         return [None] * len(motions)
-    text = evaluator.embed_texts([t.text for t in judged])
-    others = evaluator.statements
+    text = critic.embed_texts([t.text for t in judged])
+    others = critic.statements
     same = text @ others.T > _SAME
     frames = np.array([t.stop - t.start for t in judged], dtype=float)
     pieces = [
         representation.encode(motion.slice(t.start, t.stop)) for motion in motions for t in judged
     ]
-    embedded = evaluator.embed_motions(pieces).reshape(len(motions), len(judged), -1)
+    embedded = critic.embed_motions(pieces).reshape(len(motions), len(judged), -1)
     nearest = np.where(same, -1.0, embedded @ others.T).max(axis=-1)
     lead = (embedded * text).sum(axis=-1) - nearest
     return [float(row @ frames / frames.sum()) for row in lead]

@@ -3,7 +3,7 @@ from hypothesis import strategies as st
 
 from motiondiffuse_ros.corpus.importer import load_motion
 from motiondiffuse_ros.diffusion.composition import TimedText
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.selection import MATCH_MARGIN, choose, text_matches
 from motiondiffuse_ros.text import load_text_encoder
@@ -32,7 +32,7 @@ def test_without_a_match_the_most_plausible_wins():
 
 def test_real_clips_match_their_own_words_and_side_best(real_paths):
     clips = {p.stem.split("_")[1]: load_motion(p).resample(20.0) for p in real_paths}
-    evaluator = Evaluator.from_pretrained(shipped_evaluator(), load_text_encoder("minilm"))
+    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
     asked = {
         "wave-right-hand": "a person waves with the right hand",
         "raise-up-left-hand": "a person raises the left hand",
@@ -43,12 +43,12 @@ def test_real_clips_match_their_own_words_and_side_best(real_paths):
         candidates = [own, own.mirrored(), clips["bow"]]
         frames = min(m.frames for m in candidates)
         whole = (TimedText(text, 0, frames),)
-        matches = text_matches(evaluator, PoseState(), candidates, whole)
+        matches = text_matches(critic, PoseState(), candidates, whole)
         assert max(range(3), key=lambda i: matches[i]) == 0, (kind, matches)
 
 
 def test_texts_on_parts_and_short_ones_are_not_judged(real_paths):
     motion = load_motion(real_paths[0]).resample(20.0)
-    evaluator = Evaluator.from_pretrained(shipped_evaluator(), load_text_encoder("minilm"))
+    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
     texts = (TimedText("waves", 0, 40, ("right_arm",)), TimedText("a person bows", 0, 10))
-    assert text_matches(evaluator, PoseState(), [motion], texts) == [None]
+    assert text_matches(critic, PoseState(), [motion], texts) == [None]

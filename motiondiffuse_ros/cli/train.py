@@ -34,8 +34,8 @@ class Train:
     """The paper's architecture (needs --text-encoder) instead of the default one."""
     text_encoder: Path | None = None
     """Folder of CLIP's files, for --paper."""
-    evaluator: Path | None = None
-    """Folder of an evaluator, to align the text layers with its space (see docs/training.md)."""
+    critic: Path | None = None
+    """Evaluator whose text space the text layers are drawn to (see docs/training.md)."""
     layers: int = DenoiserConfig.layers
     """Decoder layers."""
     width: int = DenoiserConfig.width
@@ -71,10 +71,10 @@ def main(arguments: Sequence[str]) -> int:
 
     corpus = Corpus.load(options.corpus)
     encoder = load_text_encoder(denoiser.text_encoder, options.text_encoder)
-    evaluator = (
+    critic = (
         None
-        if options.evaluator is None
-        else Evaluator.from_pretrained(options.evaluator, load_text_encoder("minilm"))
+        if options.critic is None
+        else Evaluator.from_pretrained(options.critic, load_text_encoder("minilm"))
     )
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
@@ -87,7 +87,7 @@ def main(arguments: Sequence[str]) -> int:
             options.training,
             options.out,
             resume=options.resume,
-            evaluator=evaluator,
+            critic=critic,
             on_captions=lambda done, total: bar.update(captions, completed=done, total=total),
         )
         task = bar.add_task("training", total=options.training.minutes)

@@ -40,6 +40,10 @@ _NO_SIDE = {
         "a person holds both hands above the head",
         "a person raises both hands above the head",
     ),
+    "bow": (
+        "a person bends forward at the waist and straightens up again",
+        "a person bows forward and comes up again",
+    ),
     "still": ("a person stands still", "a person stays in place without moving"),
 }
 
@@ -50,6 +54,8 @@ _CURVE = 1.5  # m
 _STILL = 0.06  # m/s, mean over all joints
 _MOVING, _SLOW, _BRISK, _RUN = 0.2, 0.65, 0.8, 2.3  # m/s
 _HELD = 0.4  # share of the window
+_BENT, _ERECT = np.radians(40.0), np.radians(20.0)
+_SUNK, _REACHING = 0.12, 0.45  # m
 
 
 @dataclass(frozen=True)
@@ -82,10 +88,15 @@ def state(features: Array, representation: Representation, fps: float) -> tuple[
     kinds: list[tuple[str, int]] = []
     groups = representation.groups()
     root = features[:, groups["rotations"]][:, :6].reshape(-1, 2, 3)
+    height = features[:, groups["root_height"]][:, 0]
+    positions = features[:, groups["positions"]].reshape(len(features), -1, 3)
+    way = Travel.of(features, representation, fps)
+    if way.path < _ON_THE_SPOT and _bows(positions, height):
+        kinds.append(("bow", 0))
     if root[:, 1, 1].min() > _UPRIGHT:
         feet = features[:, groups["contacts"]] > 0.5
-        kinds += _travelling(Travel.of(features, representation, fps), _walks(feet))
-        kinds += _hands(features[:, groups["positions"]].reshape(len(features), -1, 3))
+        kinds += _travelling(way, _walks(feet))
+        kinds += _hands(positions)
         velocities = features[:, groups["velocities"]].reshape(len(features), -1, 3)
         if np.linalg.norm(velocities, axis=-1).mean(axis=1).max() < _STILL:
             kinds.append(("still", 0))
@@ -139,6 +150,19 @@ def _walks(contacts: NDArray[np.bool_]) -> bool:
     feet = np.stack([contacts[:, :half].any(axis=1), contacts[:, half:].any(axis=1)], axis=1)
     steps = np.abs(np.diff(feet.astype(int), axis=0)).sum(axis=0)
     return bool((steps >= 2).all() and feet.any(axis=1).mean() > 0.3)
+
+
+def _bows(positions: Array, height: Array) -> bool:
+    """Whether the upper body bends far ahead between erect ends, over legs that stay long.
+
+    A hand that reaches low picks something up; that is no bow.
+    """
+    neck = positions[:, CANONICAL.index("neck") - 1]
+    pitch = np.arctan2(neck[:, 2], neck[:, 1] - height)
+    erect = max(pitch[0], pitch[-1]) < _ERECT
+    legs = height.max() - height.min() < _SUNK
+    wrists = [positions[:, CANONICAL.index(f"{side}_wrist") - 1, 1] for side in ("left", "right")]
+    return bool(erect and legs and pitch.max() > _BENT and np.min(wrists) > _REACHING)
 
 
 def _hands(positions: Array) -> list[tuple[str, int]]:

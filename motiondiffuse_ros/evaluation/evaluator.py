@@ -30,8 +30,17 @@ _BATCH = 64
 
 
 def shipped_evaluator() -> Path:
-    """Return the folder of the evaluator that comes with the package."""
-    return Path(str(files("motiondiffuse_ros"))) / "weights" / "evaluator"
+    """Return the folder of the ruler: no weights were trained towards it or chosen by it."""
+    return _shipped("evaluator")
+
+
+def shipped_critic() -> Path:
+    """Return the folder of the evaluator that training aligns texts with and plans choose by."""
+    return _shipped("critic")
+
+
+def _shipped(name: str) -> Path:
+    return Path(str(files("motiondiffuse_ros"))) / "weights" / name
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """Text alignment: the denoiser's pooled text learns to tell apart what motions tell apart.
 
 The denoising loss teaches the text layers little about words that change one token and half a
-body: "left" and "right" stay close together for hours. The evaluator's contrastive loss separates
+body: "left" and "right" stay close together for hours. A critic's contrastive loss separates
 them within minutes, so its text space is the target of a fixed part of the pooled text.
 """
 
@@ -19,18 +19,18 @@ _SEED = 0
 
 
 class TextAlignment:
-    """Distance between the pooled text and the evaluator's embedding of the same text."""
+    """Distance between the pooled text and the critic's embedding of the same text."""
 
-    def __init__(self, evaluator: Evaluator, texts: Iterable[str], time_width: int) -> None:
+    def __init__(self, critic: Evaluator, texts: Iterable[str], time_width: int) -> None:
         """Embed every text once.
 
         Args:
-            evaluator: Trained on the same training split.
+            critic: Trained on the same training split.
             texts: All that training may show; "" keeps its freedom.
             time_width: Width of the pooled text.
         """
         ordered = sorted(set(texts) - {""})
-        vectors = torch.from_numpy(evaluator.embed_texts(ordered))
+        vectors = torch.from_numpy(critic.embed_texts(ordered))
         self._targets = dict(zip(ordered, vectors.clone(), strict=True))
         generator = torch.Generator().manual_seed(_SEED)
         # fixed directions: a learnt projection could read small differences and leave them small
@@ -38,7 +38,7 @@ class TextAlignment:
         self._directions = torch.linalg.qr(gaussian).Q
 
     def __call__(self, pooled: Tensor, texts: list[str]) -> Tensor:
-        """Return the mean squared distance, in the evaluator's unit, over texts that are not empty.
+        """Return the mean squared distance, in the critic's unit, over texts that are not empty.
 
         Args:
             pooled: Of the denoiser's conditioning [B, time_width].

@@ -26,8 +26,8 @@ class TrainConfig:
         position_weight: Weight of the loss on joint positions by forward kinematics.
         velocity_weight: Weight of the loss on joint velocities by forward kinematics.
         slide_weight: Weight of the loss on feet that move while in contact.
-        alignment_weight: Weight of the loss that draws the pooled text towards the evaluator's text
-            space; used if the trainer is given an evaluator.
+        alignment_weight: Weight of the loss that draws the pooled text towards the text space of
+            the critic, if the trainer is given one.
         snr_limit: Largest weight of windows with little noise; 1 weighs all noise levels alike.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.

@@ -70,7 +70,7 @@ class Trainer:
         out: Path,
         *,
         resume: bool = False,
-        evaluator: Evaluator | None = None,
+        critic: Evaluator | None = None,
         on_captions: Callable[[int, int], None] | None = None,
     ) -> None:
         config.validate()
@@ -104,9 +104,7 @@ class Trainer:
         texts = all_captions((*train, *val))
         self._captions = CaptionStates(texts, encoder, on_captions)
         self._alignment = (
-            None
-            if evaluator is None
-            else TextAlignment(evaluator, texts, denoiser_config.time_width)
+            None if critic is None else TextAlignment(critic, texts, denoiser_config.time_width)
         )
         settings = {
             "max_frames": denoiser_config.max_frames,

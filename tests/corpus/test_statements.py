@@ -29,6 +29,7 @@ def _of(paths, name):
         ("dataset-2_raise-up-left-hand_normal_001", "one hand up", "left"),
         ("dataset-2_wave-right-hand_normal_001", "one hand up", "right"),
         ("dataset-2_walk-turn-right_normal_001", "curve", "right"),
+        ("dataset-1_bow_active_001", "bow", "forward"),
     ],
 )
 def test_real_clips_are_stated_as_what_they_are(real_paths, clip, kind, word):

@@ -1,7 +1,7 @@
 import pytest
 import torch
 
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
 from motiondiffuse_ros.text import load_text_encoder
 from motiondiffuse_ros.training.alignment import TextAlignment
 
@@ -10,8 +10,8 @@ TEXTS = ["a person waves with the left hand", "a person waves with the right han
 
 @pytest.fixture(scope="module")
 def alignment():
-    evaluator = Evaluator.from_pretrained(shipped_evaluator(), load_text_encoder("minilm"))
-    return TextAlignment(evaluator, TEXTS, time_width=256)
+    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
+    return TextAlignment(critic, TEXTS, time_width=256)
 
 
 def test_following_its_gradient_separates_left_from_right(alignment):
