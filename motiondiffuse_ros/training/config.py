@@ -28,6 +28,8 @@ class TrainConfig:
         slide_weight: Weight of the loss on feet that move while in contact.
         alignment_weight: Weight of the loss that draws the pooled text towards the text space of
             the critic, if the trainer is given one.
+        noisiest: Share of windows that are drawn from the noisiest 15 % of the steps; the others are
+            drawn from all.
         snr_limit: Largest weight of windows with little noise; 1 weighs all noise levels alike.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.
@@ -47,10 +49,11 @@ class TrainConfig:
     statements: float = 0.3
     difference_weight: float = 3.0
     position_weight: float = 0.5
-    velocity_weight: float = 0.5
-    slide_weight: float = 0.6
+    velocity_weight: float = 0.3
+    slide_weight: float = 0.3
     alignment_weight: float = 0.2
-    snr_limit: float = 5.0
+    noisiest: float = 0.5
+    snr_limit: float = 1.0
     ema_decay: float = 0.999
     bf16: bool = True
     seed: int = 0
@@ -65,7 +68,7 @@ class TrainConfig:
                 raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
         if not self.snr_limit >= 1.0:
             raise InputError(f"training snr_limit must be at least 1, got {self.snr_limit}")
-        for name in ("condition_dropout", "mirror", "statements", "ema_decay"):
+        for name in ("condition_dropout", "mirror", "statements", "noisiest", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")
 

@@ -33,6 +33,7 @@ STATE_FILE = "training_state.pt"
 CHECKPOINT_FOLDER = "checkpoint"
 _VALIDATION_BATCHES = 8
 _VALIDATION_SEED = 1234
+_NOISIEST = 0.85  # part of the steps below the noisiest ones
 
 
 @dataclass(frozen=True)
@@ -212,7 +213,7 @@ class Trainer:
     ) -> tuple[Losses, Tensor]:
         clean = batch.features
         noise = torch.randn(clean.shape, generator=generator)
-        steps = torch.randint(self._denoiser.config.train_steps, (len(clean),), generator=generator)
+        steps = self._draw_steps(len(clean), generator)
         drop = torch.rand(len(clean), generator=generator) < dropout
         texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
         tokens = self._captions.batch(texts)
@@ -228,6 +229,19 @@ class Trainer:
         if self._alignment is None:
             return losses, torch.zeros(())
         return losses, self._alignment(conditioning.pooled, texts)
+
+    def _draw_steps(self, count: int, generator: torch.Generator | None) -> Tensor:
+        """Return diffusion steps [count]; evenly for validation, which brings its generator.
+
+        A motion is so smooth that what it does shows through most of the noise. Only the noisiest
+        steps have nothing but the text to go by, and evenly drawn they are too few to learn it.
+        """
+        total = self._denoiser.config.train_steps
+        steps = torch.randint(total, (count,), generator=generator)
+        if generator is not None:
+            return steps
+        noisiest = torch.randint(round(_NOISIEST * total), total, (count,))
+        return torch.where(torch.rand(count) < self._config.noisiest, noisiest, steps)
 
     def _noise_weight(self, alpha: Tensor) -> Tensor:
         """Return the weight of windows by noise: their signal-to-noise ratio, within limits.
