@@ -28,8 +28,7 @@ class TrainConfig:
         slide_weight: Weight of the loss on feet that move while in contact.
         alignment_weight: Weight of the loss that draws the pooled text towards the text space of
             the critic, if the trainer is given one.
-        noisiest: Share of windows that are drawn from the noisiest 15 % of the steps; the others are
-            drawn from all.
+        noisiest: Share of windows whose step is one of the noisiest 15 %; the others' is any.
         snr_limit: Largest weight of windows with little noise; 1 weighs all noise levels alike.
         ema_decay: Largest decay of the averaged weights.
         bf16: Train under bfloat16 autocast.

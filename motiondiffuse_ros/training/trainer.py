@@ -26,6 +26,7 @@ from motiondiffuse_ros.text import TextEncoder
 from motiondiffuse_ros.training.alignment import TextAlignment
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
+from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
@@ -33,7 +34,6 @@ STATE_FILE = "training_state.pt"
 CHECKPOINT_FOLDER = "checkpoint"
 _VALIDATION_BATCHES = 8
 _VALIDATION_SEED = 1234
-_NOISIEST = 0.85  # part of the steps below the noisiest ones
 
 
 @dataclass(frozen=True)
@@ -213,7 +213,9 @@ class Trainer:
     ) -> tuple[Losses, Tensor]:
         clean = batch.features
         noise = torch.randn(clean.shape, generator=generator)
-        steps = self._draw_steps(len(clean), generator)
+        # validation, which brings its generator, is over all steps alike
+        noisiest = self._config.noisiest if generator is None else 0.0
+        steps = draw_steps(self._denoiser.config.train_steps, len(clean), noisiest, generator)
         drop = torch.rand(len(clean), generator=generator) < dropout
         texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
         tokens = self._captions.batch(texts)
@@ -224,32 +226,11 @@ class Trainer:
         alpha = self._scheduler.alphas_cumprod[steps]
         kind = self._denoiser.config.prediction_type
         predicted = to_clean(kind, output, noisy, alpha[:, None, None])
-        weight = self._noise_weight(alpha)
+        weight = noise_weight(alpha, self._config.snr_limit)
         losses = self._loss(predicted, clean, batch.lengths, self._step, weight)
         if self._alignment is None:
             return losses, torch.zeros(())
         return losses, self._alignment(conditioning.pooled, texts)
-
-    def _draw_steps(self, count: int, generator: torch.Generator | None) -> Tensor:
-        """Return diffusion steps [count]; evenly for validation, which brings its generator.
-
-        A motion is so smooth that what it does shows through most of the noise. Only the noisiest
-        steps have nothing but the text to go by, and evenly drawn they are too few to learn it.
-        """
-        total = self._denoiser.config.train_steps
-        steps = torch.randint(total, (count,), generator=generator)
-        if generator is not None:
-            return steps
-        noisiest = torch.randint(round(_NOISIEST * total), total, (count,))
-        return torch.where(torch.rand(count) < self._config.noisiest, noisiest, steps)
-
-    def _noise_weight(self, alpha: Tensor) -> Tensor:
-        """Return the weight of windows by noise: their signal-to-noise ratio, within limits.
-
-        Min-SNR weighting (Hang et al. 2023) for clean features, but never under 1: what the text
-        decides is decided where noise prevails, while steps and hands are refined where it is low.
-        """
-        return (alpha / (1 - alpha)).clamp(1.0, self._config.snr_limit)
 
     def _learning_rate(self) -> float:
         warmup = min(1.0, (self._step + 1) / max(self._config.warmup_steps, 1))
