@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.free_prompts import FREE_PROMPTS
+from benchmarks.kinematic_rules import travel
 from benchmarks.sampled_prompts import Sampling, sample_prompts
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.render import contact_sheet
@@ -56,7 +57,7 @@ class Options:
 
 def travelled(motion: Motion) -> float:
     """Return the distance [m] between the first and last root position over the ground."""
-    return float(np.linalg.norm(motion.root[-1, :2] - motion.root[0, :2]))
+    return float(np.linalg.norm(travel(motion)[:2]))
 
 
 def _walks_ahead(motion: Motion, _: float) -> bool:

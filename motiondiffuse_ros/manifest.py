@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from importlib.resources import files as package_files
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,11 @@ from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.hashing import file_sha256
 
 CONFIG_FILE = "config.json"
+
+
+def shipped(name: str) -> Path:
+    """Return a folder of weights that comes with the package: base, critic or evaluator."""
+    return Path(str(package_files("motiondiffuse_ros"))) / "weights" / name
 
 
 def write_manifest(folder: Path, config: dict[str, Any], files: Iterable[str]) -> None:

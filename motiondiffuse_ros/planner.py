@@ -7,7 +7,6 @@ import secrets
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -17,6 +16,7 @@ from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
+from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.bvh import write_bvh
 from motiondiffuse_ros.physics.repair import put_on_floor
@@ -33,7 +33,7 @@ _STAGES = {"text": 0.02, "sampling": 0.68, "physics": 0.25, "retargeting": 0.05}
 
 def shipped_weights() -> Path:
     """Return the folder of the weights that come with the package."""
-    return Path(str(files("motiondiffuse_ros"))) / "weights" / "base"
+    return shipped("base")
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 
 from motiondiffuse_ros.errors import RequestError
-from motiondiffuse_ros.motion.parts import PARTS
 
 _NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
 _PIECE = re.compile(
@@ -27,6 +26,8 @@ Piece = tuple[str, float, float, tuple[str, ...]]
 def parse_timeline(text: str) -> list[Piece] | None:
     """Return (text, start, end, parts) of each piece, times in s; None for a text without times.
 
+    Whether times and parts make sense is for `MotionRequest.validate` to say.
+
     Raises:
         RequestError: If some pieces have times and one has none, or one cannot be read.
     """
@@ -40,11 +41,5 @@ def parse_timeline(text: str) -> list[Piece] | None:
                 f"piece {i} of the text, {piece.strip()!r}, is not a timed text; write: {FORM}"
             )
         parts = tuple(name for name in re.split(r"[\s+,]+", found["parts"].strip()) if name)
-        for name in parts:
-            if name not in PARTS:
-                raise RequestError(
-                    f"piece {i} of the text: unknown body part '{name}'; the parts are "
-                    f"{', '.join(PARTS)}"
-                )
         pieces.append((found["text"].strip(), float(found["start"]), float(found["end"]), parts))
     return pieces

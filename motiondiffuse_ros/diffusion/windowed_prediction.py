@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Protocol
 
 import numpy as np
 import torch
@@ -17,19 +16,9 @@ from motiondiffuse_ros.diffusion.denoiser import Conditioning
 _BATCH_ROWS = 64  # bounds memory on long timelines with many candidates
 
 
-class Predictor(Protocol):
-    """The denoiser under guidance, on a batch of windows."""
-
-    def __call__(
-        self,
-        noisy: Tensor,
-        step: int,
-        lengths: Tensor,
-        condition: Conditioning,
-        unconditional: Conditioning,
-    ) -> Tensor:
-        """Return the prediction [B, T, D] for noisy features [B, T, D]."""
-        ...
+Predictor = Callable[[Tensor, int, Tensor, Conditioning, Conditioning], Tensor]
+"""The denoiser under guidance: noisy features [B, T, D], step, lengths [B], the condition of the
+texts and of no text, to the prediction [B, T, D]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,6 +129,8 @@ def _pulls(
     time_correction: float,
     device: torch.device,
 ) -> list[_Pull]:
+    if part_correction == time_correction == 0.0:
+        return []
     # a window is there as far as its greatest weight says: pulls fade with the ramps, or the
     # correction itself would make a seam where a window begins
     presence = [w.weight.max(axis=1) for w in windows]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,13 @@ from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.errors import TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
-from motiondiffuse_ros.manifest import load_weights, read_manifest, save_weights, write_manifest
+from motiondiffuse_ros.manifest import (
+    load_weights,
+    read_manifest,
+    save_weights,
+    shipped,
+    write_manifest,
+)
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder
 
@@ -31,16 +36,12 @@ _BATCH = 64
 
 def shipped_evaluator() -> Path:
     """Return the folder of the ruler: no weights were trained towards it or chosen by it."""
-    return _shipped("evaluator")
+    return shipped("evaluator")
 
 
 def shipped_critic() -> Path:
     """Return the folder of the evaluator that training aligns texts with and plans choose by."""
-    return _shipped("critic")
-
-
-def _shipped(name: str) -> Path:
-    return Path(str(files("motiondiffuse_ros"))) / "weights" / name
+    return shipped("critic")
 
 
 @dataclass(frozen=True, eq=False)
