@@ -30,6 +30,8 @@ class Train:
     """Folder of the run."""
     resume: bool = False
     """Go on with the run in the folder."""
+    start: Path | None = None
+    """Checkpoint folder to start from instead of random weights (fine-tuning)."""
     paper: bool = False
     """The paper's architecture (needs --text-encoder) instead of the default one."""
     text_encoder: Path | None = None
@@ -65,10 +67,13 @@ def main(arguments: Sequence[str]) -> int:
     )
     denoiser.validate()
     from motiondiffuse_ros.corpus.store import Corpus
+    from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
     from motiondiffuse_ros.evaluation.evaluator import Evaluator
     from motiondiffuse_ros.text import load_text_encoder
+    from motiondiffuse_ros.training.memory import keep_freed_memory
     from motiondiffuse_ros.training.trainer import Trainer, TrainProgress
 
+    keep_freed_memory()
     corpus = Corpus.load(options.corpus)
     encoder = load_text_encoder(denoiser.text_encoder, options.text_encoder)
     critic = (
@@ -87,6 +92,7 @@ def main(arguments: Sequence[str]) -> int:
             options.training,
             options.out,
             resume=options.resume,
+            start=None if options.start is None else Checkpoint.from_pretrained(options.start),
             critic=critic,
             on_captions=lambda done, total: bar.update(captions, completed=done, total=total),
         )

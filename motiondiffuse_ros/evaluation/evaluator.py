@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from motiondiffuse_ros.corpus.statements import all_statements
+from motiondiffuse_ros.corpus.statements import OPPOSED, statements_of
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.errors import TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
@@ -68,8 +68,8 @@ class Evaluator:
 
     @cached_property
     def statements(self) -> Array:
-        """Unit vectors of all statements [S, space]; they are the same for every request."""
-        return self.embed_texts(all_statements())
+        """Unit vectors of opposed statements [S, space]; they are the same for every request."""
+        return self.embed_texts(statements_of(OPPOSED))
 
     @torch.inference_mode()
     def embed_texts(self, texts: Sequence[str]) -> Array:

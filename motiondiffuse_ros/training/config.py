@@ -22,6 +22,7 @@ class TrainConfig:
         condition_dropout: Share of windows trained with the empty text, for guidance.
         mirror: Share of windows that are mirrored, with left and right swapped in the text.
         statements: Share of windows whose text is what their kinematics state for certain.
+        crop: Share of windows of clips longer than a window that are shown in shorter pieces.
         difference_weight: Weight of the loss on frame-to-frame differences.
         position_weight: Weight of the loss on joint positions by forward kinematics.
         velocity_weight: Weight of the loss on joint velocities by forward kinematics.
@@ -46,6 +47,7 @@ class TrainConfig:
     condition_dropout: float = 0.1
     mirror: float = 0.5
     statements: float = 0.3
+    crop: float = 0.5
     difference_weight: float = 3.0
     position_weight: float = 0.5
     velocity_weight: float = 0.3
@@ -67,7 +69,7 @@ class TrainConfig:
                 raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
         if not self.snr_limit >= 1.0:
             raise InputError(f"training snr_limit must be at least 1, got {self.snr_limit}")
-        for name in ("condition_dropout", "mirror", "statements", "noisiest", "ema_decay"):
+        for name in ("condition_dropout", "mirror", "statements", "crop", "noisiest", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")
 

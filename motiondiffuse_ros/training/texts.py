@@ -10,6 +10,7 @@ from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import forms_of
 from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.store import Clip
+from motiondiffuse_ros.evaluation.actions import action_of
 from motiondiffuse_ros.text import TextEncoder, TokenStates
 
 _BATCH = 256
@@ -43,11 +44,18 @@ class CaptionStates:
         return TokenStates(states, torch.arange(states.shape[1])[None] < lengths[:, None])
 
 
+def texts_of(clip: Clip) -> tuple[str, ...]:
+    """Return the captions of a clip and, where its name has one, the words of its action label."""
+    label = action_of(clip)
+    return clip.captions if label is None else (*clip.captions, label)
+
+
 def all_captions(clips: Iterable[Clip]) -> set[str]:
     """Return every text that training may show.
 
-    Captions, with their sides, statements, the mirror images of all and the empty text.
+    Captions and action labels, with their sides, statements, the mirror images of all and the empty
+    text.
     """
-    texts = {form for clip in clips for c in clip.captions for form in forms_of(c)}
+    texts = {form for clip in clips for text in texts_of(clip) for form in forms_of(text)}
     texts |= set(all_statements())
     return texts | {mirror_caption(text) for text in texts} | {""}

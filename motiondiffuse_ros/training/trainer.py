@@ -71,6 +71,7 @@ class Trainer:
         out: Path,
         *,
         resume: bool = False,
+        start: Checkpoint | None = None,
         critic: Evaluator | None = None,
         on_captions: Callable[[int, int], None] | None = None,
     ) -> None:
@@ -83,6 +84,8 @@ class Trainer:
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)
+        if start is not None:
+            self._start_from(start)
         self._optimizer = torch.optim.AdamW(
             self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99), fused=True
         )
@@ -112,7 +115,12 @@ class Trainer:
             "mirror": config.mirror,
         }
         self._windows = WindowSampler(
-            corpus, train, statements=config.statements, seed=config.seed + self._step, **settings
+            corpus,
+            train,
+            statements=config.statements,
+            crop=config.crop,
+            seed=config.seed + self._step,
+            **settings,
         ).batches(config.batch_size)
         held_out = WindowSampler(corpus, val, statements=0.0, seed=_VALIDATION_SEED, **settings)
         batches = held_out.batches(config.batch_size)
@@ -237,6 +245,19 @@ class Trainer:
         done = min(1.0, self._seconds / (60.0 * self._config.minutes))
         # ends at 1 % rather than zero: the last minutes of a run still learn
         return self._config.learning_rate * warmup * (0.505 + 0.495 * math.cos(math.pi * done))
+
+    def _start_from(self, start: Checkpoint) -> None:
+        theirs, ours = start.denoiser.config, self._denoiser.config
+        if theirs != ours:
+            differing = [k for k, v in theirs.to_dict().items() if ours.to_dict()[k] != v]
+            raise CheckpointError(
+                f"the weights to start from differ from this denoiser in {', '.join(differing)}"
+            )
+        if start.text_encoder_sha256 != self._encoder.sha256:
+            raise CheckpointError(
+                "the weights to start from were trained with another text encoder"
+            )
+        self._denoiser.load_state_dict(start.denoiser.state_dict())
 
     def _parameter_groups(self) -> list[dict]:
         matrices = [p for p in self._denoiser.parameters() if p.ndim > 1]

@@ -13,10 +13,12 @@ from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import name_side
 from motiondiffuse_ros.corpus.statements import state
 from motiondiffuse_ros.corpus.store import Clip, Corpus
+from motiondiffuse_ros.training.texts import texts_of
 
 _BUCKET_BATCHES = 8
 _LENGTH_STEP = 28
 _STATED_SECONDS = (3.0, 5.0, 8.0)
+_CROP_SECONDS = 4.0
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,9 @@ class WindowSampler:
     """Draws windows without end, batches of like length together.
 
     Most come with a caption of their clip, a share of `statements` with what their kinematics
-    state for certain; of those each kind of statement is as frequent as any other.
+    state for certain; of those each kind of statement is as frequent as any other. Of clips that do
+    not fit into a window a share of `crop` is shown in shorter pieces: their captions speak of the
+    whole clip, so that no piece fits better than another, and people ask for any length.
     """
 
     def __init__(
@@ -60,10 +64,12 @@ class WindowSampler:
         max_frames: int,
         mirror: float,
         statements: float = 0.0,
+        crop: float = 0.0,
         seed: int,
     ) -> None:
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
-        self._mirror, self._statements = mirror, statements
+        self._mirror, self._statements, self._crop = mirror, statements, crop
+        self._shortest = min(round(_CROP_SECONDS * corpus.fps), max_frames)
         self._rng = np.random.default_rng(seed)
         self._probability = clip_probabilities(clips, 4 * max_frames)
         self._stated = _stated_windows(corpus, clips, max_frames) if statements > 0 else []
@@ -88,11 +94,13 @@ class WindowSampler:
     def _draw_captioned(self) -> _Window:
         clip = self._clips[self._rng.choice(len(self._clips), p=self._probability)]
         frames = min(clip.frames, self._max_frames)
+        if clip.frames > self._max_frames and self._rng.random() < self._crop:
+            frames = int(self._rng.integers(self._shortest, self._max_frames + 1))
         start = int(self._rng.integers(clip.frames - frames + 1))
         corpus = self._corpus
         features = corpus.of(clip)[start : start + frames]
         texts = (
-            name_side(text, features, corpus.representation, corpus.fps) for text in clip.captions
+            name_side(text, features, corpus.representation, corpus.fps) for text in texts_of(clip)
         )
         return _Window(clip, start, frames, tuple(texts))
 

@@ -1,0 +1,243 @@
+"""What the kinematics of a window leave no doubt about; `statements` puts it into words.
+
+Rules are strict: a window of which nothing is certain is better left unsaid. A window and its
+mirror image give the same findings with their sides swapped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motiondiffuse_ros.corpus.travel import Travel
+from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
+from motiondiffuse_ros.motion.features import Representation
+from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import CANONICAL, TOE_HEIGHT
+
+_UPRIGHT = np.cos(np.radians(35.0))
+_TURN, _HALF_TURN = np.radians(50.0), np.radians((140.0, 230.0))
+_QUARTER_TURN, _CIRCLE = np.radians((70.0, 115.0)), np.radians(270.0)
+_ON_THE_SPOT = 0.8  # m
+_CURVE = 1.5  # m
+_STILL = 0.06  # m/s, mean over all joints
+_MOVING, _SLOW, _BRISK, _RUN = 0.2, 0.65, 0.8, 2.3  # m/s
+_FAST_WALK, _SLOW_RUN, _FAST_RUN = (1.6, 2.1), 2.8, 3.1  # m/s
+_HELD = 0.4  # share of the window
+_BENT, _ERECT = np.radians(40.0), np.radians(20.0)
+_SUNK, _DOWN, _REACHING = 0.12, 0.3, 0.45  # m
+_SPREAD = 1.1  # m between the wrists
+_LEG_UP, _FOOT_DOWN = 0.35, 0.15  # m, toe over the floor
+_QUICK, _CALM = 2.2, 1.0  # m/s, against the body
+_OFF_THE_FLOOR = 0.06  # m
+_FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
+_STEPS = 4
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is certain.
+
+    Attributes:
+        kind: What it is about.
+        side: 1 is left, -1 right, 0 neither.
+        metres: Distance gone, 0 where it is about something else.
+    """
+
+    kind: str
+    side: int = 0
+    metres: int = 0
+
+
+def findings(features: Array, representation: Representation, fps: float) -> list[Finding]:
+    """Return all that is certain of a window of the pose state.
+
+    Args:
+        features: Of the window [T, D], not normalised.
+        representation: The pose state.
+        fps: Their rate, Hz.
+    """
+    groups = representation.groups()
+    body = _Body(features, representation)
+    way = Travel.of(features, representation, fps)
+    found: list[Finding] = []
+    if way.path < _ON_THE_SPOT:
+        found += _postures(body)
+    if way.speed < _SLOW:
+        found += _legs(body, fps)
+    if way.speed < 0.8 * _RUN:
+        found += _jumps(body, fps)
+    if body.upright.min() > _UPRIGHT:
+        feet = features[:, groups["contacts"]] > 0.5
+        found += _travelling(way, _walks(feet), feet)
+        found += _hands(body, fps)
+        velocities = features[:, groups["velocities"]].reshape(len(features), -1, 3)
+        if np.linalg.norm(velocities, axis=-1).mean(axis=1).max() < _STILL:
+            found.append(Finding("still"))
+    return found
+
+
+class _Body:
+    """Places of joints in the heading frame: x left, y up, z ahead, x and z from the root."""
+
+    def __init__(self, features: Array, representation: Representation) -> None:
+        groups = representation.groups()
+        self.height = features[:, groups["root_height"]][:, 0]
+        columns = features[:, groups["rotations"]][:, :6].reshape(-1, 2, 3)
+        self.upright = columns[:, 1, 1]
+        self._positions = features[:, groups["positions"]].reshape(len(features), -1, 3)
+
+    def place(self, name: str) -> Array:
+        """Return [T, 3] of a joint below the root."""
+        return self._positions[:, CANONICAL.index(name) - 1]
+
+    def level(self, name: str) -> Array:
+        """Return the height of a joint over the floor [T]."""
+        return self.place(name)[:, 1]
+
+    def speed(self, name: str, fps: float) -> Array:
+        """Return the speed of a joint against the root [T - 2], smoothed over three frames."""
+        place = self.place(name) - np.stack([0 * self.height, self.height, 0 * self.height], -1)
+        return np.linalg.norm(place[2:] - place[:-2], axis=-1) * fps / 2.0
+
+
+def _travelling(way: Travel, walks: bool, feet: NDArray[np.bool_]) -> list[Finding]:
+    if not walks:
+        return []  # falls, slides and rides go somewhere too
+    moving = way.speed > _MOVING
+    size, side = abs(way.turned), int(np.sign(way.turned))
+    if size > _TURN:
+        return _turning(way, size, side)
+    if way.path < _ON_THE_SPOT and size < 0.5 * _TURN and _step_count(feet) >= _STEPS:
+        return [Finding("on the spot")]
+    if way.side and moving:
+        return [Finding("sideways", way.side)]
+    if way.straight < 0 and way.path > 0.5 and moving:
+        return [Finding("back")]
+    if way.straight > 0 and way.path > 0.8 and moving and size < 0.5 * _TURN:
+        return _straight_ahead(way)
+    return []
+
+
+def _turning(way: Travel, size: float, side: int) -> list[Finding]:
+    found = []
+    if way.path < _ON_THE_SPOT:
+        found.append(Finding("turn", side))
+    elif way.ahead > max(_CURVE, 0.8 * way.path):
+        if size > _CIRCLE:
+            found.append(Finding("circle", side))
+        found.append(Finding("run in a curve" if way.speed > _RUN else "curve", side))
+    if way.path < 2.0 * _ON_THE_SPOT:
+        if _QUARTER_TURN[0] < size < _QUARTER_TURN[1]:
+            found.append(Finding("quarter turn", side))
+        elif _HALF_TURN[0] < size < _HALF_TURN[1]:
+            found.append(Finding("half turn", side))
+    return found
+
+
+def _straight_ahead(way: Travel) -> list[Finding]:
+    found = []
+    if way.speed > _RUN:
+        found.append(Finding("run"))
+        if way.speed < _SLOW_RUN:
+            found.append(Finding("slow run"))
+        elif way.speed > _FAST_RUN:
+            found.append(Finding("fast run"))
+        return found
+    if way.speed < _SLOW:
+        found.append(Finding("slow walk"))
+    elif _BRISK < way.speed < 0.8 * _RUN:
+        found.append(Finding("walk"))
+    if _FAST_WALK[0] < way.speed < _FAST_WALK[1]:
+        found.append(Finding("fast walk"))
+    metres = round(way.ahead)
+    if way.speed < _FAST_WALK[0] and abs(way.ahead - metres) < 0.2:
+        found.append(Finding("distance", metres=max(metres, 1)))
+    return found
+
+
+def _walks(contacts: NDArray[np.bool_]) -> bool:
+    """Whether each foot leaves the floor and stands on it, and one of them most of the time."""
+    feet = _feet(contacts)
+    steps = np.abs(np.diff(feet.astype(int), axis=0)).sum(axis=0)
+    return bool((steps >= 2).all() and feet.any(axis=1).mean() > 0.3)
+
+
+def _step_count(contacts: NDArray[np.bool_]) -> int:
+    """Return how often a foot is lifted."""
+    return int((np.diff(_feet(contacts).astype(int), axis=0) < 0).sum())
+
+
+def _feet(contacts: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    half = len(CONTACT_JOINTS) // 2
+    return np.stack([contacts[:, :half].any(axis=1), contacts[:, half:].any(axis=1)], axis=1)
+
+
+def _postures(body: _Body) -> list[Finding]:
+    """Return what the body does with its height: bows, goes down, reaches down."""
+    neck = body.place("neck")
+    pitch = np.arctan2(neck[:, 2], neck[:, 1] - body.height)
+    erect = max(pitch[0], pitch[-1]) < _ERECT
+    lowest = np.minimum(body.level("left_wrist"), body.level("right_wrist")).min()
+    legs = body.height.max() - body.height.min()
+    found = []
+    # a hand that reaches low picks something up; that is no bow
+    if erect and legs < _SUNK and pitch.max() > _BENT and lowest > _REACHING:
+        found.append(Finding("bow"))
+    from_standing = pitch[0] < _ERECT and body.height[0] > body.height.max() - _SUNK
+    if from_standing and legs > _DOWN:
+        found.append(Finding("down low"))
+    if from_standing and lowest < _REACHING - 0.1:
+        found.append(Finding("reach down"))
+    return found
+
+
+def _legs(body: _Body, fps: float) -> list[Finding]:
+    toes = {side: body.level(f"{side}_foot") for side in ("left", "right")}
+    found = []
+    for side, own, other in ((1, "left", "right"), (-1, "right", "left")):
+        up = toes[own] > _LEG_UP
+        if not up.any() or toes[other].max() > _FOOT_DOWN:
+            continue
+        fast = body.speed(f"{own}_foot", fps).max(initial=0.0)
+        if fast > 2.0 * _QUICK:
+            found.append(Finding("one leg fast", side))
+        elif up.mean() > 0.5 * _HELD:
+            found.append(Finding("one leg up", side))
+    return found
+
+
+def _jumps(body: _Body, fps: float) -> list[Finding]:
+    """Find flights: both feet off the floor while the root falls freely, up or down."""
+    toes = np.minimum(body.level("left_foot"), body.level("right_foot"))[1:-1]
+    falling = np.diff(body.height, 2) * fps**2 < _FREE_FALL
+    flying = (toes > TOE_HEIGHT + _OFF_THE_FLOOR) & falling
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flying.astype(int), [0]])))
+    times = int((edges[1::2] - edges[::2] >= _FLIGHT * fps).sum())
+    if not times:
+        return []
+    return [Finding("jump"), Finding("jumps")] if times > 2 else [Finding("jump")]
+
+
+def _hands(body: _Body, fps: float) -> list[Finding]:
+    head = body.level("head")
+    wrists = {side: body.level(f"{side}_wrist") for side in ("left", "right")}
+    shoulders = {side: body.level(f"{side}_shoulder") for side in wrists}
+    up = {side: wrists[side] > head for side in wrists}
+    down = {side: (wrists[side] < shoulders[side]).all() for side in wrists}
+    fastest = {side: body.speed(f"{side}_wrist", fps).max(initial=0.0) for side in wrists}
+    found = []
+    if (up["left"] & up["right"]).mean() > _HELD:
+        found.append(Finding("both hands up"))
+    for side, own, other in ((1, "left", "right"), (-1, "right", "left")):
+        if up[own].mean() > _HELD and down[other]:
+            found.append(Finding("one hand up", side))
+        if fastest[own] > _QUICK and fastest[other] < _CALM:
+            found.append(Finding("one arm fast", side))
+    apart = np.linalg.norm(body.place("left_wrist") - body.place("right_wrist"), axis=-1)
+    level = np.max([np.abs(wrists[side] - shoulders[side]) for side in wrists], axis=0) < 0.25
+    if ((apart > _SPREAD) & level).mean() > _HELD:
+        found.append(Finding("arms out"))
+    return found
