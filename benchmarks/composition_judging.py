@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tyro
 from rich.console import Console
 
 from benchmarks.composition_lists import Entry, Piece
@@ -202,13 +201,13 @@ def resampled(figure: Callable[[Array], float], rows: Array, seed: int) -> Estim
     return Estimate(figure(rows), float(1.96 * np.std(values)))
 
 
-def settings_from_command(description: str) -> Settings:
-    """Parse the command line."""
-    return tyro.cli(Settings, description=description)
-
-
 def _cell(value: Estimate | None) -> str:
     if value is None:
         return "–"
-    spread = f" ± {value.interval:.2g}" if value.interval > 0.0 else ""
-    return f"{value.mean:.3g}{spread}"
+    spread = f" ± {_figure(value.interval)}" if value.interval > 0.0 else ""
+    return f"{_figure(value.mean)}{spread}"
+
+
+def _figure(value: float) -> str:
+    """Return three digits, without an exponent."""
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"

@@ -42,7 +42,7 @@ class Composer:
 
         Args:
             weights: Checkpoint folder.
-            config: Sampler; its corrections are set by each call.
+            config: Sampler; what concerns composition is set by each call.
             seed: Of all noise; every call draws the same.
             blend_seconds: Time over which neighbours are blended.
 
@@ -89,10 +89,14 @@ class Composer:
         *,
         part_correction: float = 0.0,
         time_correction: float = 0.0,
+        apart_above: float = 1.0,
     ) -> list[Array]:
         """Return the features [frames, D] of each request, not normalised."""
         config = replace(
-            self._config, part_correction=part_correction, time_correction=time_correction
+            self._config,
+            part_correction=part_correction,
+            time_correction=time_correction,
+            apart_above=apart_above,
         )
         out: list[Array] = []
         for group in track(_groups(requests), what, transient=True):

@@ -12,14 +12,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import tyro
 
 from benchmarks.composition_judging import (
     Bench,
     Figures,
+    Settings,
     distance,
     precision,
     resampled,
-    settings_from_command,
 )
 from benchmarks.composition_lists import TIME, Entry, load_list
 from motiondiffuse_ros.diffusion.composition import TimedText
@@ -95,7 +96,7 @@ def _joined(entry: Entry) -> str:
 
 def main() -> None:
     """Sample, measure and print the table."""
-    settings = settings_from_command(__doc__ or "")
+    settings = tyro.cli(Settings, description=__doc__)
     bench = Bench(settings, load_list(TIME))
     composer, entries = bench.composer, bench.entries
     real = [bench.real(piece) for entry in entries for piece in entry.pieces]

@@ -12,6 +12,7 @@ from torch import Tensor
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
+from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.process import SCHEDULERS, from_clean, make_scheduler, to_clean
 from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
@@ -30,6 +31,8 @@ class SamplerConfig:
         part_correction: λ₁ of eq. 10: how far texts on different parts are drawn together, 0
             (hard masks) to 1.
         time_correction: λ₂ of eq. 11: the same of neighbours in time, where they overlap.
+        apart_above: Noise level, as part of the training steps, above which texts on different
+            parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
         eta: Noise re-injected by DDIM, 0 to 1.
         bf16: Evaluate the denoiser under bfloat16 autocast.
     """
@@ -40,6 +43,7 @@ class SamplerConfig:
     guidance_interval: tuple[float, float] = (0.0, 1.0)
     part_correction: float = 0.0
     time_correction: float = 0.0
+    apart_above: float = 1.0
     eta: float = 0.0
     bf16: bool = True
 
@@ -51,7 +55,7 @@ class SamplerConfig:
             )
         if not 1 <= self.steps <= 1000:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
-        for name in ("part_correction", "time_correction", "eta"):
+        for name in ("part_correction", "time_correction", "apart_above", "eta"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise RequestError(f"{name} must be from 0 to 1, got {getattr(self, name)}")
         low, high = self.guidance_interval
@@ -115,6 +119,7 @@ def sample(
         part_correction=config.part_correction,
         time_correction=config.time_correction,
         device=denoiser.device,
+        imagination=_imagination(denoiser, windows, config),
     )
     return _denoise(predict, x, denoiser, config, generator, constraints, on_step, cancelled)
 
@@ -192,6 +197,20 @@ def _denoise(
             f"{config.scheduler}, guidance scale {config.guidance_scale}); lower the guidance scale"
         )
     return x
+
+
+def _imagination(
+    denoiser: Denoiser, windows: Sequence[Window], config: SamplerConfig
+) -> Imagination | None:
+    if config.apart_above >= 1.0:
+        return None
+    return Imagination(
+        windows,
+        make_scheduler(config.scheduler, denoiser.config).alphas_cumprod,
+        denoiser.config.prediction_type,
+        above=config.apart_above,
+        device=denoiser.device,
+    )
 
 
 def _guided(

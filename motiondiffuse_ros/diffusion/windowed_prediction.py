@@ -12,6 +12,7 @@ from torch import Tensor
 
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
+from motiondiffuse_ros.diffusion.imagination import Imagination
 
 _BATCH_ROWS = 64  # bounds memory on long timelines with many candidates
 
@@ -31,6 +32,8 @@ class _Pull:
     stop: int
     strength: Tensor
     """[frames, 1]"""
+    in_time: bool
+    """Whether the windows are neighbours in time of the same parts."""
 
 
 class WindowedPrediction:
@@ -55,6 +58,7 @@ class WindowedPrediction:
         part_correction: float,
         time_correction: float,
         device: torch.device,
+        imagination: Imagination | None = None,
     ) -> None:
         """Lay out batches.
 
@@ -67,8 +71,11 @@ class WindowedPrediction:
             part_correction: λ₁, 0 to 1.
             time_correction: λ₂, 0 to 1.
             device: Of the noisy features.
+            imagination: Of the windows, where they are denoised apart at first; λ₁ then counts
+                from where they no longer are.
         """
         self._predict, self._windows, self._candidates = predict, windows, candidates
+        self._imagination = imagination
         self._weights = [
             torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(device)
             for w in windows
@@ -88,9 +95,11 @@ class WindowedPrediction:
 
     def __call__(self, x: Tensor, step: int) -> Tensor:
         """Return the prediction [C, T, D] for noisy features x [C, T, D]."""
-        predictions = self._of_windows(x, step)
-        drawn = [torch.zeros_like(p) for p in predictions] if self._pulls else []
-        for pull in self._pulls:
+        added = None if self._imagination is None else self._imagination.at(step)
+        predictions = self._of_windows(x, step, added)
+        pulls = [pull for pull in self._pulls if added is None or pull.in_time]
+        drawn = [torch.zeros_like(p) for p in predictions] if pulls else []
+        for pull in pulls:
             a, b = (
                 slice(pull.start - self._windows[w].start, pull.stop - self._windows[w].start)
                 for w in (pull.one, pull.other)
@@ -102,12 +111,16 @@ class WindowedPrediction:
             drawn[pull.other][:, b] -= step_together
         out = torch.zeros_like(x)
         for w, window in enumerate(self._windows):
-            prediction = predictions[w] + drawn[w] if self._pulls else predictions[w]
+            prediction = predictions[w] + drawn[w] if pulls else predictions[w]
             out[:, window.start : window.stop] += self._weights[w] * prediction
+        if self._imagination is not None and added is not None:
+            self._imagination.learn(step, added, predictions, out)
         return out
 
-    def _of_windows(self, x: Tensor, step: int) -> list[Tensor]:
-        """Return the prediction of each window [C, frames, D]."""
+    def _of_windows(
+        self, x: Tensor, step: int, added: Sequence[Tensor | None] | None
+    ) -> list[Tensor]:
+        """Return the prediction of each window [C, frames, D]; see `Imagination.at`."""
         out = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
         for batch, condition, unconditional in zip(
             self._batches, self._conditions, self._unconditional, strict=True
@@ -117,6 +130,9 @@ class WindowedPrediction:
             for row, (w, c) in zip(noisy, batch, strict=True):
                 window = self._windows[w]
                 row[: len(self._weights[w])] = x[c, window.start : window.stop]
+                own = None if added is None else added[w]
+                if own is not None:
+                    row[: len(self._weights[w])] += own[c]
             prediction = self._predict(noisy, step, lengths, condition, unconditional)
             for row, (w, c) in zip(prediction, batch, strict=True):
                 out[w][c] = row[: len(self._weights[w])]
@@ -142,12 +158,13 @@ def _pulls(
     for a, b in combinations(range(len(windows)), 2):
         one, other = windows[a], windows[b]
         start, stop = max(one.start, other.start), min(one.stop, other.stop)
-        amount = time_correction if one.parts == other.parts else part_correction
+        in_time = one.parts == other.parts
+        amount = time_correction if in_time else part_correction
         if start >= stop or amount == 0.0:
             continue
         p = presence[a][start - one.start : stop - one.start]
         q = presence[b][start - other.start : stop - other.start]
         strength = amount * p * q / np.maximum(total[start:stop], 1.0)
         column = torch.from_numpy(strength[:, None].astype(np.float32)).to(device)
-        pulls.append(_Pull(a, b, start, stop, column))
+        pulls.append(_Pull(a, b, start, stop, column, in_time))
     return pulls
