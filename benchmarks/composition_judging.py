@@ -51,8 +51,10 @@ class Settings:
     """Weight of the text."""
     blend: float = 0.5
     """Time over which neighbours are blended, s."""
-    corrections: tuple[float, ...] = (0.0, 0.25, 0.5, 1.0)
+    corrections: tuple[float, ...] = (0.0, 0.5, 1.0)
     """λ of the rows of eq. 10 or eq. 11."""
+    bf16: bool = False
+    """Evaluate the denoiser in bfloat16, as the planner does."""
     seed: int = 0
     """Of all noise and draws."""
     json: Path | None = None
@@ -74,7 +76,9 @@ class Bench:
         )
         self.composer = Composer(
             settings.weights or shipped("base"),
-            SamplerConfig(steps=settings.steps, guidance_scale=settings.guidance_scale),
+            SamplerConfig(
+                steps=settings.steps, guidance_scale=settings.guidance_scale, bf16=settings.bf16
+            ),
             settings.seed,
             settings.blend,
         )

@@ -47,7 +47,7 @@ _WINDOW = 80
 class SpaceSettings(Settings):
     """What to run."""
 
-    apart: tuple[float, ...] = (0.5, 0.25)
+    apart: tuple[float, ...] = (0.25,)
     """Noise levels of the rows that denoise parts apart above them."""
     apart_corrections: tuple[float, ...] = (0.0, 0.5)
     """λ₁ of these rows, below the noise level."""
