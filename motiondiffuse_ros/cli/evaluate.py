@@ -27,17 +27,17 @@ class Evaluate:
     corpus: Path = Path("corpus")
     """Corpus folder made by `motiondiffuse corpus build`."""
     split: str = "test"
-    """train, val or test."""
+    """train, val, test, or all: every clip, for a corpus that the weights have never seen."""
     weights: Path | None = None
     """Checkpoint folder; the shipped one if not given."""
     text_encoder: Path | None = None
     """Folder of CLIP's files, for weights trained with it."""
     evaluator: Path | None = None
     """Evaluator folder; the shipped one if not given."""
-    out: Path = Path("evaluation.json")
+    out: Path = Path("metrics.json")
     """File for the figures."""
     actions: bool = True
-    """Also take the figures of action-conditioned generation."""
+    """Also take the figures of action-conditioned generation, if clips have actions."""
     sampler: SamplerConfig = field(default_factory=SamplerConfig)
     protocol: Protocol = field(default_factory=Protocol)
 
@@ -49,7 +49,7 @@ def main(arguments: Sequence[str]) -> int:
     options.sampler.validate()
     from motiondiffuse_ros.corpus.store import Corpus
     from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-    from motiondiffuse_ros.evaluation.action_protocol import evaluate_actions
+    from motiondiffuse_ros.evaluation.action_protocol import clips_with_actions, evaluate_actions
     from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
     from motiondiffuse_ros.evaluation.protocol import evaluate_texts
     from motiondiffuse_ros.evaluation.sources import Model, NearestCaption, RandomClip
@@ -77,25 +77,29 @@ def main(arguments: Sequence[str]) -> int:
                 f"the {what} speak {name}, the corpus {options.corpus} holds "
                 f"{corpus.representation.name}"
             )
+    if corpus.fps != pipeline.fps:
+        raise CheckpointError(
+            f"the weights speak {pipeline.fps:g} Hz, the corpus {options.corpus} holds "
+            f"{corpus.fps:g} Hz"
+        )
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     tables = {}
     with Progress(*columns, console=console) as bar:
         sampled = bar.add_task("sampling", total=None)
         model = Model(
-            weights.name,
             pipeline,
             options.sampler,
             lambda done, total: bar.update(sampled, completed=done, total=total),
         )
-        train = corpus.split("train")
+        others = corpus.split("all" if options.split == "all" else "train")
         sources = (
-            RandomClip(corpus, train),
-            NearestCaption(corpus, train, evaluator.encoder),
+            RandomClip(corpus, others),
+            NearestCaption(corpus, others, evaluator.encoder),
             model,
         )
         kinds = {"texts": evaluate_texts}
-        if options.actions:
+        if options.actions and clips_with_actions(corpus, options.split, evaluator):
             kinds["actions"] = evaluate_actions
         for kind, evaluate in kinds.items():
             task = bar.add_task(kind, total=options.protocol.repeats * len(sources))
@@ -107,19 +111,24 @@ def main(arguments: Sequence[str]) -> int:
                 options.protocol,
                 lambda name, repeat, task=task: bar.advance(task),
             )
+    texts, actions = tables["texts"], tables.get("actions")
     result = {
         "corpus": str(options.corpus),
         "split": options.split,
-        "weights": {"name": weights.name, "sha256": pipeline.weights_sha256},
+        "clips": len(corpus.split(options.split)),
+        "repeats": options.protocol.repeats,
+        "weights": weights.name,
+        "weights_sha256": pipeline.weights_sha256,
         "evaluator_sha256": evaluator.sha256,
         "sampler": vars(options.sampler),
         "protocol": options.protocol.to_dict(),
-        **{kind: rows_to_json(rows) for kind, rows in tables.items()},
+        "rows": rows_to_json(texts),
+        "actions": None if actions is None else rows_to_json(actions),
     }
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
     for kind, rows in tables.items():
         console.print(terminal_table(metrics_cells(rows), f"{kind}, {options.split} split"))
-    console.print(terminal_table(plausibility_cells(tables["texts"]), "physics, before repair"))
+    console.print(terminal_table(plausibility_cells(texts), "physics, before repair"))
     console.print(f"written to {options.out}")
     return 0

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from motiondiffuse_ros.corpus.store import Corpus
+from motiondiffuse_ros.corpus.store import Clip, Corpus
 from motiondiffuse_ros.errors import InputError
 from motiondiffuse_ros.evaluation.actions import action_of
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
@@ -18,6 +18,15 @@ from motiondiffuse_ros.evaluation.tally import Row, Tally
 from motiondiffuse_ros.motion.rotations import Array
 
 _MIN_FRAMES = 20
+
+
+def clips_with_actions(corpus: Corpus, split: str, evaluator: Evaluator) -> list[Clip]:
+    """Return the clips of a split whose action the recogniser knows."""
+    return [
+        clip
+        for clip in corpus.split(split)
+        if action_of(clip) in evaluator.actions and clip.frames >= _MIN_FRAMES
+    ]
 
 
 def evaluate_actions(
@@ -38,11 +47,7 @@ def evaluate_actions(
     """
     protocol.validate()
     known = {label: i for i, label in enumerate(evaluator.actions)}
-    clips = [
-        clip
-        for clip in corpus.split(split)
-        if action_of(clip) in known and clip.frames >= _MIN_FRAMES
-    ]
+    clips = clips_with_actions(corpus, split, evaluator)
     if not clips:
         raise InputError(f"no clip of the split '{split}' has an action that the recogniser knows")
     labels = [str(action_of(clip)) for clip in clips]
@@ -55,9 +60,10 @@ def evaluate_actions(
         again = [draw_window(corpus, clip, longest, rng) for clip in clips]
         real = evaluator.embed_actions(windows)
         again = evaluator.embed_actions(again)
-        tally.add("real motion", _figures(evaluator, windows, truth, again, repeat))
+        tally.add("real", _figures(evaluator, windows, truth, again, repeat))
         for source in sources:
-            answers = source.motions(labels, [len(w) for w in windows], int(rng.integers(2**31)))
+            seed = int(rng.integers(2**31))
+            answers = source.motions(labels, [len(w) for w in windows], seed, clips)
             tally.add(source.name, _figures(evaluator, answers, truth, real, repeat))
             if on_progress is not None:
                 on_progress(source.name, repeat + 1)
@@ -70,8 +76,8 @@ def _figures(
     embedded, pairs = evaluator.embed_actions(motions), np.random.default_rng(repeat)
     groups = [embedded[truth == label] for label in np.unique(truth)]
     return {
-        "Accuracy": float((evaluator.recognise(motions) == truth).mean()),
-        "FID": frechet_distance(embedded, real),
-        "Diversity": diversity(embedded, pairs),
-        "MultiModality": multimodality(groups, pairs),
+        "accuracy": float((evaluator.recognise(motions) == truth).mean()),
+        "fid": frechet_distance(embedded, real),
+        "diversity": diversity(embedded, pairs),
+        "multimodality": multimodality(groups, pairs),
     }

@@ -35,14 +35,14 @@ class Protocol:
         repeats: Times that everything is drawn and generated anew.
         texts_sampled: Texts that are answered several times, for MultiModality.
         samples: Answers to each of them.
-        plausible_motions: Motions of the first repeat whose physics is measured.
+        plausible_motions: Motions of each repeat and source whose physics is measured.
         seed: Of every draw.
     """
 
     repeats: int = 20
     texts_sampled: int = 10
     samples: int = 10
-    plausible_motions: int = 200
+    plausible_motions: int = 40
     seed: int = 0
 
     def validate(self) -> None:
@@ -70,7 +70,7 @@ def evaluate_texts(
 
     Args:
         corpus: Clips and captions.
-        split: Which clips' captions are asked for.
+        split: Which clips' captions are asked for; with "all" there is no row of training clips.
         evaluator: The ruler.
         sources: What answers them.
         protocol: How.
@@ -80,8 +80,9 @@ def evaluate_texts(
         InputError: If the protocol is out of range or the split too small for a pool.
     """
     protocol.validate()
-    tally, physics = Tally(), {}
-    clips, training = corpus.split(split), corpus.split("train")
+    tally = Tally()
+    clips = corpus.split(split)
+    training = () if split == "all" else corpus.split("train")
     longest = evaluator.network.config.max_frames
     for repeat in range(protocol.repeats):
         rng = np.random.default_rng([protocol.seed, repeat])
@@ -92,6 +93,7 @@ def evaluate_texts(
             )
         texts = [item.text for item in items]
         frames = [len(item.features) for item in items]
+        own = [item.clip for item in items]
         text = evaluator.embed_texts(texts)
         drawn = list(pools(texts, rng))
         shown = rng.permutation(len(items))[: protocol.plausible_motions]
@@ -99,27 +101,30 @@ def evaluate_texts(
         # a second window of each clip, and clips that the model has learnt from: how far real
         # motion is from real motion
         again = _embed(evaluator, draw_items(corpus, clips, longest, rng))
-        learnt = _same_data_sets(draw_items(corpus, training, longest, rng), items, rng)
         real = evaluator.embed_motions(windows)
-        tally.add("real motion", _right_answers(text, real, drawn) | _as_a_set(real, again, repeat))
-        tally.add("real training clips", _as_a_set(_embed(evaluator, learnt), real, repeat))
-        if repeat == 0:
-            physics["real motion"] = _physics(corpus, [windows[i] for i in shown])
+        tally.add(
+            "real",
+            _right_answers(text, real, drawn)
+            | _as_a_set(real, again, repeat)
+            | _physics(corpus, [windows[i] for i in shown]),
+        )
+        if training:
+            learnt = _same_data_sets(draw_items(corpus, training, longest, rng), items, rng)
+            tally.add("training", _as_a_set(_embed(evaluator, learnt), real, repeat))
         for source in sources:
             seed = int(np.random.default_rng([protocol.seed, repeat, 2]).integers(2**31))
-            answers = source.motions(texts, frames, seed)
+            answers = source.motions(texts, frames, seed, own)
             motion = evaluator.embed_motions(answers)
             figures = _right_answers(text, motion, drawn) | _as_a_set(motion, real, repeat)
             if source.generates:
-                figures["MultiModality"] = _multimodality(
-                    source, texts, frames, evaluator, protocol, seed + 1
+                figures["multimodality"] = _multimodality(
+                    source, items, evaluator, protocol, seed + 1
                 )
+            figures |= _physics(corpus, [answers[i] for i in shown])
             tally.add(source.name, figures)
-            if repeat == 0:
-                physics[source.name] = _physics(corpus, [answers[i] for i in shown])
             if on_progress is not None:
                 on_progress(source.name, repeat + 1)
-    return tally.rows(physics)
+    return tally.rows()
 
 
 def _embed(evaluator: Evaluator, items: Sequence[Item]) -> Array:
@@ -130,14 +135,14 @@ def _right_answers(text: Array, motion: Array, drawn: Sequence[Indices]) -> dict
     """Return how well the motions answer their own texts, over pools."""
     ranked = [retrieval(text[pool], motion[pool]) for pool in drawn]
     precision = np.mean([tops for tops, _ in ranked], axis=0)
-    figures = {f"R top {top}": float(p) for top, p in zip(TOPS, precision, strict=True)}
-    return {**figures, "MM dist": float(np.mean([distance for _, distance in ranked]))}
+    figures = {f"r_precision_top{top}": float(p) for top, p in zip(TOPS, precision, strict=True)}
+    return {**figures, "mm_dist": float(np.mean([distance for _, distance in ranked]))}
 
 
 def _as_a_set(motion: Array, real: Array, repeat: int) -> dict[str, float]:
     """Return how the motions compare with real ones and each other, whatever the texts."""
     pairs = np.random.default_rng(repeat)  # the same pairs for every source
-    return {"FID": frechet_distance(motion, real), "Diversity": diversity(motion, pairs)}
+    return {"fid": frechet_distance(motion, real), "diversity": diversity(motion, pairs)}
 
 
 def _same_data_sets(
@@ -154,15 +159,19 @@ def _same_data_sets(
 
 def _multimodality(
     source: MotionSource,
-    texts: Sequence[str],
-    frames: Sequence[int],
+    items: Sequence[Item],
     evaluator: Evaluator,
     protocol: Protocol,
     seed: int,
 ) -> float:
-    chosen = np.random.default_rng(seed).permutation(len(texts))[: protocol.texts_sampled]
-    repeated = [int(i) for i in chosen for _ in range(protocol.samples)]
-    motions = source.motions([texts[i] for i in repeated], [frames[i] for i in repeated], seed)
+    chosen = np.random.default_rng(seed).permutation(len(items))[: protocol.texts_sampled]
+    repeated = [items[i] for i in chosen for _ in range(protocol.samples)]
+    motions = source.motions(
+        [item.text for item in repeated],
+        [len(item.features) for item in repeated],
+        seed,
+        [item.clip for item in repeated],
+    )
     embedded = evaluator.embed_motions(motions).reshape(len(chosen), protocol.samples, -1)
     return multimodality(list(embedded), np.random.default_rng(seed))
 

@@ -26,37 +26,50 @@ class MotionSource(Protocol):
     name: str
     generates: bool
 
-    def motions(self, texts: Sequence[str], frames: Sequence[int], seed: int) -> list[Array]:
-        """Return the features [at most frames, D] of one motion for each text."""
+    def motions(
+        self, texts: Sequence[str], frames: Sequence[int], seed: int, own: Sequence[Clip]
+    ) -> list[Array]:
+        """Return the features [at most frames, D] of one motion for each text.
+
+        Args:
+            texts: What is asked for.
+            frames: Wanted lengths.
+            seed: Of all draws.
+            own: The clip that each text belongs to, which is no answer to it.
+        """
         ...
 
 
 class RandomClip:
     """A random clip, whatever the text: what any useful answer must beat."""
 
-    name, generates = "random clip", False
+    name, generates = "random", False
 
     def __init__(self, corpus: Corpus, clips: Sequence[Clip]) -> None:
         self._corpus = corpus
         self._clips = [clip for clip in clips if clip.frames >= MIN_FRAMES]
 
-    def motions(self, texts: Sequence[str], frames: Sequence[int], seed: int) -> list[Array]:
+    def motions(
+        self, texts: Sequence[str], frames: Sequence[int], seed: int, own: Sequence[Clip]
+    ) -> list[Array]:
         """Return windows of clips drawn with the same chance each."""
         rng = np.random.default_rng(seed)
-        chosen = rng.integers(len(self._clips), size=len(texts))
-        return [
-            draw_window(self._corpus, self._clips[c], f, rng)
-            for c, f in zip(chosen, frames, strict=True)
-        ]
+        answers = []
+        for f, clip in zip(frames, own, strict=True):
+            chosen = int(rng.integers(len(self._clips)))
+            if self._clips[chosen] is clip:
+                chosen = (chosen + 1) % len(self._clips)
+            answers.append(draw_window(self._corpus, self._clips[chosen], f, rng))
+        return answers
 
 
 class NearestCaption:
-    """The training clip whose caption is nearest in the space of the text encoder.
+    """The clip whose caption is nearest in the space of the text encoder.
 
     Where several clips share the caption one of them is drawn.
     """
 
-    name, generates = "nearest caption", False
+    name, generates = "retrieval", False
 
     def __init__(self, corpus: Corpus, clips: Sequence[Clip], encoder: TextEncoder) -> None:
         self._corpus, self._encoder = corpus, encoder
@@ -68,15 +81,24 @@ class NearestCaption:
         self._captions = sorted(self._owners)
         self._vectors = self._pooled(self._captions)
 
-    def motions(self, texts: Sequence[str], frames: Sequence[int], seed: int) -> list[Array]:
+    def motions(
+        self, texts: Sequence[str], frames: Sequence[int], seed: int, own: Sequence[Clip]
+    ) -> list[Array]:
         """Return a window of a clip with the nearest caption."""
         rng = np.random.default_rng(seed)
-        nearest = (self._pooled(texts) @ self._vectors.T).argmax(axis=1)
+        near = self._pooled(texts) @ self._vectors.T
         answers = []
-        for n, f in zip(nearest, frames, strict=True):
-            owners = self._owners[self._captions[n]]
+        for row, f, clip in zip(near, frames, own, strict=True):
+            owners = self._nearest_owners(row, clip)
             answers.append(draw_window(self._corpus, owners[rng.integers(len(owners))], f, rng))
         return answers
+
+    def _nearest_owners(self, near: Array, clip: Clip) -> list[Clip]:
+        for caption in np.argsort(-near):
+            owners = [c for c in self._owners[self._captions[caption]] if c is not clip]
+            if owners:
+                return owners
+        return [clip]  # a corpus of one clip
 
     def _pooled(self, texts: Sequence[str]) -> Array:
         starts = range(0, len(texts), 256)
@@ -87,19 +109,19 @@ class NearestCaption:
 class Model:
     """A checkpoint: its samples as users get them, decoded to a motion and encoded again."""
 
-    generates = True
+    name, generates = "generated", True
 
     def __init__(
         self,
-        name: str,
         pipeline: MotionPipeline,
         config: SamplerConfig,
         on_progress: Callable[[int, int], None] | None = None,
     ) -> None:
-        self.name = name
         self._pipeline, self._config, self._on_progress = pipeline, config, on_progress
 
-    def motions(self, texts: Sequence[str], frames: Sequence[int], seed: int) -> list[Array]:
+    def motions(
+        self, texts: Sequence[str], frames: Sequence[int], seed: int, own: Sequence[Clip]
+    ) -> list[Array]:
         """Return samples of the model."""
         motions = self._pipeline.batch(
             texts, frames, config=self._config, seed=seed, on_progress=self._on_progress

@@ -8,40 +8,46 @@ from typing import Any
 from rich.table import Table
 
 from motiondiffuse_ros.evaluation.metrics import Estimate
+from motiondiffuse_ros.evaluation.plausibility import MEASURES
 from motiondiffuse_ros.evaluation.tally import Row
 
+_HEADINGS = {
+    **{f"r_precision_top{top}": f"R top {top}" for top in (1, 2, 3)},
+    "mm_dist": "MM dist",
+    "fid": "FID",
+    "diversity": "Diversity",
+    "multimodality": "MultiModality",
+    "accuracy": "Accuracy",
+    "phys_err_mm": "phys-err mm",
+    "float_mm": "float mm",
+    "penetrate_mm": "penetrate mm",
+    "skating_ratio": "skating ratio",
+    "jerk_m_s3": "jerk m/s³",
+}
+_SOURCES = {
+    "real": "real motion",
+    "training": "real training clips",
+    "random": "random clip",
+    "retrieval": "nearest caption",
+    "generated": "generated",
+}
 
-def rows_to_json(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Return rows as JSON types; an estimate is [mean, half-width of the 95 % interval]."""
-    return [
-        {
-            "name": row.name,
-            "metrics": {
-                name: [round(e.mean, 5), round(e.interval, 5)] for name, e in row.metrics.items()
-            },
-            **(
-                {"plausibility": {k: round(v, 4) for k, v in row.plausibility.items()}}
-                if row.plausibility
-                else {}
-            ),
-        }
-        for row in rows
-    ]
+
+def rows_to_json(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float] | None]]:
+    """Return rows by name as JSON types; a metric that does not apply to a row is null."""
+    names = _metrics(rows)
+    return {row.name: {n: _to_json(row.metrics.get(n)) for n in names} for row in rows}
 
 
 def metrics_cells(rows: Sequence[Row]) -> list[list[str]]:
     """Return the header and a line for each row; a metric that does not apply is a dash."""
-    names = list(dict.fromkeys(name for row in rows for name in row.metrics))
-    lines = [[row.name, *(_estimate(row.metrics.get(name)) for name in names)] for row in rows]
-    return [["", *names], *lines]
+    return _cells(rows, [name for name in _metrics(rows) if name not in MEASURES])
 
 
 def plausibility_cells(rows: Sequence[Row]) -> list[list[str]]:
     """The same for the physical measures, for the rows that have them."""
-    measured = [row for row in rows if row.plausibility]
-    names = list(measured[0].plausibility) if measured else []
-    lines = [[row.name, *(f"{row.plausibility[n]:.3g}" for n in names)] for row in measured]
-    return [["", *names], *lines]
+    measured = [row for row in rows if MEASURES[0] in row.metrics]
+    return _cells(measured, list(MEASURES))
 
 
 def terminal_table(cells: Sequence[Sequence[str]], title: str) -> Table:
@@ -58,5 +64,27 @@ def markdown_table(cells: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
-def _estimate(value: Estimate | None) -> str:
-    return "–" if value is None else f"{value.mean:.3f} ± {value.interval:.3f}"
+def _cells(rows: Sequence[Row], names: Sequence[str]) -> list[list[str]]:
+    header = ["", *(_HEADINGS[name] for name in names)]
+    lines = [
+        [_SOURCES.get(row.name, row.name), *(_shown(row.metrics.get(n)) for n in names)]
+        for row in rows
+    ]
+    return [header, *lines]
+
+
+def _metrics(rows: Sequence[Row]) -> list[str]:
+    return list(dict.fromkeys(name for row in rows for name in row.metrics))
+
+
+def _shown(value: Estimate | None) -> str:
+    if value is None:
+        return "–"
+    digits = 3 if abs(value.mean) < 10.0 else 1
+    return f"{value.mean:.{digits}f} ± {value.interval:.{digits}f}"
+
+
+def _to_json(value: Estimate | None) -> dict[str, Any] | None:
+    if value is None:
+        return None
+    return {"mean": round(value.mean, 5), "ci95": round(value.interval, 5)}

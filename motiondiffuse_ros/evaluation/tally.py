@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from motiondiffuse_ros.evaluation.metrics import Estimate
 
@@ -14,14 +14,12 @@ class Row:
     """One line of a table.
 
     Attributes:
-        name: Where the motions are from.
+        name: Where the motions are from: real, training, random, retrieval or generated.
         metrics: Estimates by name; a metric that does not apply is missing.
-        plausibility: Means of the physical measures; empty where they were not taken.
     """
 
     name: str
     metrics: dict[str, Estimate]
-    plausibility: dict[str, float] = field(default_factory=dict)
 
 
 class Tally:
@@ -35,10 +33,9 @@ class Tally:
         for metric, value in figures.items():
             self._taken[name][metric].append(value)
 
-    def rows(self, plausibility: Mapping[str, dict[str, float]] | None = None) -> list[Row]:
+    def rows(self) -> list[Row]:
         """Return a row for each source, in the order of their first figures."""
-        physics = plausibility or {}
         return [
-            Row(name, {m: Estimate.of(v) for m, v in taken.items()}, physics.get(name, {}))
+            Row(name, {m: Estimate.of(v) for m, v in taken.items()})
             for name, taken in self._taken.items()
         ]

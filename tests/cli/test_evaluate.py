@@ -1,6 +1,7 @@
 """`train-evaluator` and `evaluate`, from folders to a table; small networks, a made corpus."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.errors import CheckpointError, InputError
 
-SOURCES = ["real motion", "real training clips", "random clip", "nearest caption", "weights"]
+SOURCES = ["real motion", "real training clips", "random clip", "nearest caption", "generated"]
+KEYS = ["r_precision_top1", "r_precision_top2", "r_precision_top3", "fid", "mm_dist", "diversity"]
 
 
 @pytest.fixture(scope="module")
@@ -51,27 +53,47 @@ def test_every_row_is_printed_and_every_hash_recorded(folders, tmp_path, capsys,
     out = tmp_path / "deep" / "evaluation.json"
     assert evaluate.main(_arguments(folders, out)) == 0
     result = json.loads(out.read_text())
-    for kind, figure in (("texts", "R top 3"), ("actions", "Accuracy")):
-        rows = {row["name"]: row for row in result[kind]}
-        assert set(SOURCES) - {"real training clips"} <= set(rows)
-        assert 0.0 <= rows["weights"]["metrics"][figure][0] <= 1.0
-    assert [row["name"] for row in result["texts"]] == SOURCES
-    for folder, recorded in (
-        ("weights", result["weights"]["sha256"]),
-        ("evaluator", result["evaluator_sha256"]),
-    ):
-        assert (
-            recorded in json.loads((folders / folder / "config.json").read_text())["files"].values()
-        )
+    assert list(result["rows"]) == ["real", "training", "random", "retrieval", "generated"]
+    for name in ("real", "random", "retrieval", "generated"):
+        row = result["rows"][name]
+        for key in (*KEYS, "phys_err_mm", "skating_ratio"):
+            assert set(row[key]) == {"mean", "ci95"}, (name, key)
+    assert result["rows"]["real"]["multimodality"] is None
+    assert result["rows"]["generated"]["multimodality"]["mean"] >= 0.0
+    assert 0.0 <= result["actions"]["generated"]["accuracy"]["mean"] <= 1.0
+    assert (result["clips"], result["repeats"], result["split"]) == (40, 2, "test")
+    for folder in ("weights", "evaluator"):
+        hashes = json.loads((folders / folder / "config.json").read_text())["files"].values()
+        assert result[f"{folder}_sha256"] in hashes
     assert result["sampler"]["steps"] == 2
     assert result["protocol"]["seed"] == 0
     printed = capsys.readouterr().out
     assert all(name in printed for name in SOURCES)
 
 
-def test_weights_of_another_representation_are_refused(folders, tmp_path, encoder):
-    from dataclasses import replace
+def test_a_corpus_that_the_weights_have_never_seen_is_measured_whole(
+    folders, tmp_path, made_corpus
+):
+    # clips without actions in their names, and none for training
+    clips = tuple(
+        replace(c, name=f"take_{i}", split="test") for i, c in enumerate(made_corpus.split("test"))
+    )
+    replace(made_corpus, clips=clips, features=_features(made_corpus, clips)).save(tmp_path / "new")
+    out = tmp_path / "metrics.json"
+    arguments = [*_arguments(folders, out), "--split", "all"]
+    arguments[arguments.index("--corpus") + 1] = str(tmp_path / "new")
+    assert evaluate.main(arguments) == 0
+    result = json.loads(out.read_text())
+    assert list(result["rows"]) == ["real", "random", "retrieval", "generated"]
+    assert result["clips"] == 40
+    assert result["actions"] is None
 
+
+def _features(corpus, clips):
+    return np.concatenate([corpus.of(c) for c in clips])
+
+
+def test_weights_of_another_representation_are_refused(folders, tmp_path, encoder):
     other = replace(SMALL, representation="humanml3d", feature_dim=263)
     statistics = Statistics(np.zeros(263, "f"), np.ones(263, "f"))
     Checkpoint(Denoiser(other), statistics, encoder.sha256).save_pretrained(tmp_path / "weights")
