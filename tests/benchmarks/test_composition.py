@@ -4,11 +4,14 @@ from synthetic import drifting, standing, waving
 
 from benchmarks.composition_judging import TextRetrieval
 from benchmarks.composition_lists import SPACE, TIME, load_list
+from benchmarks.composition_sampling import Composer
 from benchmarks.composition_space import STAND_CLIP, arms_of, own_parts, splice
 from motiondiffuse_ros.corpus.captions import captions_of, read_captions, shipped_caption_files
 from motiondiffuse_ros.corpus.split import split_of
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.parts import PARTS, part_joints
 
@@ -82,3 +85,26 @@ def test_retrieval_finds_a_text_by_its_own_vector_and_counts_ties_as_wrong(encod
     assert (retrieval.ranks(evaluator.embed_texts(texts[:20]), texts[:20]) == 0).all()
     nothing = np.zeros((2, evaluator.network.config.space))
     assert (retrieval.ranks(nothing, texts[:2]) == 31).all()
+
+
+@pytest.fixture(scope="module")
+def composer():
+    config = SamplerConfig(steps=2, bf16=False)
+    return Composer(shipped("base"), config, seed=0, blend_seconds=0.5)
+
+
+def test_requests_of_a_group_do_not_touch_each_other(composer):
+    one, other, third = load_list(SPACE)[0], load_list(TIME)[0], load_list(TIME)[1]
+    requests = [composer.request(composer.timed(e), composer.frames(e)) for e in (one, other)]
+    changed = [requests[0], composer.request(composer.timed(third), requests[1].frames)]
+    both = composer.sample(requests, "", part_correction=0.5, apart_above=0.25)
+    again = composer.sample(changed, "", part_correction=0.5, apart_above=0.25)
+    assert [len(x) for x in both] == [r.frames for r in requests]
+    np.testing.assert_allclose(both[0], again[0], atol=1e-4)
+    assert np.abs(both[1] - again[1]).max() > 0.1
+
+
+def test_one_text_is_the_same_composed_or_pasted(composer):
+    request = composer.request([TimedText("a person waves", 0, 60)], 60)
+    (sampled,), (pasted,) = composer.sample([request], ""), composer.paste([request], "")
+    np.testing.assert_allclose(sampled, pasted, atol=1e-5)
