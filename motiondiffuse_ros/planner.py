@@ -6,16 +6,19 @@ import json
 import secrets
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from motiondiffuse_ros.continuation import Continuation, Start, continue_from, placed, rejoin
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.editing import keeps_height, kept_by
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
+from motiondiffuse_ros.kept import Kept, constraints, path_points
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.bvh import write_bvh
@@ -186,6 +189,7 @@ class Planner:
         self,
         request: MotionRequest,
         *,
+        start: Start | None = None,
         progress: Callable[[Progress], None] | None = None,
         cancelled: Callable[[], bool] | None = None,
     ) -> Plan:
@@ -193,17 +197,20 @@ class Planner:
 
         Args:
             request: What to do.
+            start: What the motion continues, and the state in which the robot will be; None
+                starts over the origin with the motion's first pose.
             progress: Told of every stage and denoising step.
             cancelled: Asked before every denoising step and between stages.
 
         Raises:
             RequestError: If the request is invalid; before any work.
             RobotError: If the robot is unknown; before any work.
+            MotionFileError: If the motion to edit cannot be read; before any work.
             Cancelled: If `cancelled` said so.
         """
         request.validate()
         robot = get_robot(request.robot)
-        config = self.config
+        config, start = self.config, start or Start()
         request = request.with_defaults(
             duration=request.total_seconds,
             seed=secrets.randbelow(_MAX_DRAWN_SEED),
@@ -213,10 +220,11 @@ class Planner:
         )
         watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
-        motions = self._sample(request, texts, frames, watch)
+        motions = self._sample(request, start, texts, frames, watch)
         chosen, match, report = self._choose(motions, texts, request, robot, watch)
         trajectory = watch.run(
-            "retargeting", lambda: build_trajectory(robot, motions[chosen], config.control_rate)
+            "retargeting",
+            lambda: build_trajectory(robot, motions[chosen], config.control_rate, start.state),
         )
         assert request.seed is not None
         return Plan(
@@ -234,26 +242,64 @@ class Planner:
         )
 
     def _sample(
-        self, request: MotionRequest, texts: tuple[TimedText, ...], frames: int, watch: _Stages
+        self,
+        request: MotionRequest,
+        start: Start,
+        texts: tuple[TimedText, ...],
+        frames: int,
+        watch: _Stages,
     ) -> tuple[Motion, ...]:
         assert request.guidance_scale is not None
         assert request.steps is not None
         assert request.candidates is not None
         assert request.seed is not None
+        pipeline = self._pipeline
+        lead_in, edited = self._given(request, start, frames)
+        before = lead_in.frames if lead_in else 0
+        kept = lead_in.kept if lead_in else edited
+        points = path_points(
+            request.waypoints,
+            request.total_seconds,
+            pipeline.fps,
+            lead_in.seam if lead_in else None,
+        )
+        keep_to = constraints(pipeline, kept, points, before + frames)
         watch.enter("text")
-        samples = self._pipeline(
-            texts,
-            frames,
+        samples = pipeline(
+            tuple(_later(text, before) for text in texts),
+            before + frames,
             config=SamplerConfig(self.config.scheduler, request.steps, request.guidance_scale),
             candidates=request.candidates,
             seed=request.seed,
-            blend_frames=round(LIMITS.blend * self._pipeline.fps),
+            blend_frames=round(LIMITS.blend * pipeline.fps),
+            constraints=keep_to,
             on_step=lambda done, total: watch.advance("sampling", done / total),
             cancelled=watch.cancelled,
         )
         watch.record("text", samples.text_seconds)
         watch.record("sampling", samples.sampling_seconds)
-        return tuple(put_on_floor(motion) for motion in samples.motions)
+        return tuple(self._finished(m, start, before, edited) for m in samples.motions)
+
+    def _given(
+        self, request: MotionRequest, start: Start, frames: int
+    ) -> tuple[Continuation | None, Kept | None]:
+        """Return the lead-in or what is kept of an edited motion; at most one of them."""
+        representation, fps = self._pipeline.representation, self._pipeline.fps
+        if request.edit is not None:
+            return None, kept_by(request.edit, frames, fps, representation)
+        if start.lead_in is None:
+            return None, None
+        return continue_from(start.lead_in, frames, fps, representation.dim), None
+
+    def _finished(self, motion: Motion, start: Start, before: int, edited: Kept | None) -> Motion:
+        """Put a sampled motion on the floor, and where it is to start."""
+        if before and start.lead_in is not None:
+            return rejoin(motion, start.lead_in, before)
+        if edited is None or not keeps_height(edited, self._pipeline.representation):
+            motion = put_on_floor(motion)
+        if start.lead_in is None:
+            return motion
+        return placed(motion, start.lead_in.slice(start.lead_in.frames - 1, start.lead_in.frames))
 
     def _choose(
         self,
@@ -308,6 +354,12 @@ def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...],
             )
         )
     return tuple(texts), frames
+
+
+def _later(text: TimedText, frames: int) -> TimedText:
+    """Return a text moved on; one at the start also covers what is put before it."""
+    start = text.start + frames if text.start > 0 else 0
+    return replace(text, start=start, stop=text.stop + frames)
 
 
 class _Stages:

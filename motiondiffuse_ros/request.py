@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RequestError
+from motiondiffuse_ros.fields import check_fields, names, number, rows
 from motiondiffuse_ros.motion.parts import PARTS
 from motiondiffuse_ros.timeline_text import parse_timeline
+from motiondiffuse_ros.waypoint import Waypoint, validate_waypoints
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,8 @@ class MotionRequest:
         steps: Denoising steps.
         candidates: Samples to choose the best from.
         robot: Name of the robot.
+        waypoints: Where the root is at given times, in order of time.
+        edit: An existing motion of which a part is kept.
     """
 
     segments: tuple[Segment, ...]
@@ -86,6 +91,8 @@ class MotionRequest:
     steps: int | None = None
     candidates: int | None = None
     robot: str = "humanoid"
+    waypoints: tuple[Waypoint, ...] = ()
+    edit: Edit | None = None
 
     @property
     def total_seconds(self) -> float:
@@ -125,32 +132,26 @@ class MotionRequest:
         Raises:
             RequestError: If a field is unknown, missing or of the wrong type; validates too.
         """
-        _check_fields(cls, data, "request")
-        rows = data.get("segments")
-        if not isinstance(rows, list):
+        check_fields(cls, data, "request")
+        if not isinstance(data.get("segments"), list):
             raise RequestError("request: 'segments' must be a list of {text, start, end, parts}")
-        segments = []
-        for i, row in enumerate(rows):
-            _check_fields(Segment, row, f"segment {i + 1}")
-            if missing := {"text", "start", "end"} - set(row):
-                raise RequestError(f"segment {i + 1}: {', '.join(sorted(missing))} missing")
-            parts = row.get("parts") or ()
-            if isinstance(parts, str) or not all(isinstance(p, str) for p in parts):
-                raise RequestError(
-                    f"segment {i + 1}: 'parts' must be a list of names, got {parts!r}"
-                )
-            segments.append(
-                Segment(
-                    row["text"],
-                    _number(row["start"], f"segment {i + 1}: start"),
-                    _number(row["end"], f"segment {i + 1}: end"),
-                    tuple(parts),
-                )
-            )
-        settings = {k: v for k, v in data.items() if k != "segments" and v is not None}
+        segments = [
+            _segment(row, f"segment {i}") for i, row in enumerate(data["segments"], start=1)
+        ]
+        waypoints = rows(data.get("waypoints"), "request: 'waypoints'", "{time, x, y, heading}")
+        settings = {
+            k: v
+            for k, v in data.items()
+            if k not in ("segments", "waypoints", "edit") and v is not None
+        }
         for name in ("duration", "guidance_scale"):
             if name in settings:
-                settings[name] = _number(settings[name], f"request: {name}")
+                settings[name] = number(settings[name], f"request: {name}")
+        settings["waypoints"] = tuple(
+            Waypoint.from_dict(row, f"waypoint {i}") for i, row in enumerate(waypoints, start=1)
+        )
+        if data.get("edit") is not None:
+            settings["edit"] = Edit.from_dict(data["edit"])
         request = cls(tuple(segments), **settings)
         request.validate()
         return request
@@ -178,6 +179,9 @@ class MotionRequest:
         """Return the fields as JSON types; `from_dict` takes them back."""
         data = asdict(self)
         data["segments"] = [{**s, "parts": list(s["parts"])} for s in data["segments"]]
+        data["waypoints"] = list(data["waypoints"])
+        if self.edit is not None:
+            data["edit"] = self.edit.to_dict()
         return data
 
     def with_defaults(self, **defaults: Any) -> MotionRequest:
@@ -212,6 +216,23 @@ class MotionRequest:
         _validate_range("guidance_scale", self.guidance_scale, 0.0, limits.max_guidance_scale, "")
         if not isinstance(self.robot, str) or not self.robot:
             raise RequestError(f"request: robot must be a name, got {self.robot!r}")
+        validate_waypoints(self.waypoints, total)
+        if self.edit is not None:
+            self.edit.validate(total)
+            if self.waypoints:
+                raise RequestError("request: an edited motion keeps its path; leave out waypoints")
+
+
+def _segment(row: Any, where: str) -> Segment:
+    check_fields(Segment, row, where)
+    if missing := {"text", "start", "end"} - set(row):
+        raise RequestError(f"{where}: {', '.join(sorted(missing))} missing")
+    return Segment(
+        row["text"],
+        number(row["start"], f"{where}: start"),
+        number(row["end"], f"{where}: end"),
+        names(row.get("parts"), f"{where}: 'parts'"),
+    )
 
 
 def _validate_segment(segment: Segment, where: str, limits: RequestLimits) -> None:
@@ -279,17 +300,3 @@ def _validate_whole(name: str, value: Any, low: int, high: int) -> None:
         raise RequestError(
             f"request: {name} must be a whole number from {low} to {high}, got {value}"
         )
-
-
-def _check_fields(cls: type, data: Any, where: str) -> None:
-    known = [f.name for f in fields(cls)]
-    if not isinstance(data, Mapping):
-        raise RequestError(f"{where}: must be a mapping with the fields {', '.join(known)}")
-    if unknown := [str(k) for k in data if k not in known]:
-        raise RequestError(f"{where}: unknown field '{unknown[0]}'; they are {', '.join(known)}")
-
-
-def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise RequestError(f"{where} must be a number, got {value!r}")
-    return float(value)

@@ -11,6 +11,7 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.planner import Planner, PlannerConfig, timeline
 from motiondiffuse_ros.request import MotionRequest, Segment
 from motiondiffuse_ros.robots import broken_promises, get_robot
+from motiondiffuse_ros.waypoint import Waypoint
 
 
 @pytest.fixture(scope="module")
@@ -121,3 +122,18 @@ def test_times_become_frames_with_both_ends():
     texts, frames = timeline(request, 20.0)
     assert frames == 41
     assert [(t.start, t.stop) for t in texts] == [(0, 20), (20, 41)]
+
+
+def test_the_root_passes_waypoints_in_motion_and_trajectory(planner):
+    waypoints = (Waypoint(2.0, 1.5, 0.5), Waypoint(4.0, 2.0, 2.0, np.pi / 2))
+    plan = planner.plan(
+        MotionRequest.from_text("a person walks", 4.0, seed=1, candidates=1, waypoints=waypoints)
+    )
+    motion, trajectory = plan.motion, plan.trajectory
+    for waypoint in waypoints:
+        frame, point = round(waypoint.time * motion.fps), round(waypoint.time * 50)
+        place = [waypoint.x, waypoint.y]
+        np.testing.assert_allclose(motion.root[frame, :2], place, atol=0.15)
+        np.testing.assert_allclose(trajectory.root_position[point, :2], place, atol=0.15)
+    assert motion.heading[-1] == pytest.approx(np.pi / 2, abs=np.radians(15.0))
+    np.testing.assert_allclose(motion.root[0, :2], 0.0, atol=1e-6)

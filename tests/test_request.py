@@ -4,11 +4,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from motiondiffuse_ros.edit import Edit, parse_spans
 from motiondiffuse_ros.errors import RequestError
 from motiondiffuse_ros.motion import PARTS
 from motiondiffuse_ros.request import LIMITS, MotionRequest, Segment
+from motiondiffuse_ros.waypoint import Waypoint
 
 texts = st.text(alphabet="abc xyz", min_size=1, max_size=40).filter(str.strip)
+
+
+EXTRAS = (
+    {},
+    {"waypoints": (Waypoint(0.25, 0.5, 0.0), Waypoint(0.5, 0.5, -0.25, 1.5))},
+    {"edit": Edit("motion.npz", ("left_arm", "head"))},
+    {"edit": Edit("walk.bvh", keep=((0.0, 0.25), (0.25, 0.5)))},
+)
 
 
 @st.composite
@@ -29,6 +39,7 @@ def requests(draw):
         steps=draw(st.none() | st.integers(1, 1000)),
         candidates=draw(st.none() | st.integers(1, 64)),
         guidance_scale=draw(st.none() | st.floats(0.0, 20.0)),
+        **draw(st.sampled_from(EXTRAS)),
     )
 
 
@@ -85,6 +96,80 @@ def test_bad_requests_are_refused_in_one_line(segments, settings, says):
     with pytest.raises(RequestError, match=says) as caught:
         MotionRequest.from_dict({"segments": segments, **settings})
     assert "\n" not in str(caught.value)
+
+
+def _waypoint(**changes):
+    return {"time": 2.0, "x": 1.0, "y": 0.5, **changes}
+
+
+@pytest.mark.parametrize(
+    ("waypoints", "says"),
+    [
+        (3, "'waypoints' must be a list"),
+        (["there"], "must be a mapping with the fields time, x, y, heading"),
+        ([_waypoint(z=1.0)], "waypoint 1: unknown field 'z'; they are time, x, y, heading"),
+        ([{"time": 1.0, "x": 1.0}], "waypoint 1: y missing"),
+        ([_waypoint(x=None)], "waypoint 1: x missing"),
+        ([_waypoint(y="left")], "waypoint 1: y must be a number"),
+        ([_waypoint(x=math.nan)], "waypoint 1: x is nan m"),
+        ([_waypoint(heading=math.inf)], "waypoint 1: heading is inf rad"),
+        ([_waypoint(time=math.nan)], "waypoint 1: time is nan s"),
+        ([_waypoint(time=0.0)], "not within the motion, which lasts 4 s"),
+        ([_waypoint(time=4.5)], "not within the motion, which lasts 4 s"),
+        ([_waypoint(), _waypoint()], "waypoint 2: at 2 s, at least 0.2 s after waypoint 1 at 2 s"),
+        ([_waypoint(time=0.1, x=0.0)], "at least 0.2 s after the start"),
+        ([_waypoint(), _waypoint(time=3.0, x=6.0)], "waypoint 2: needs 5.0 m/s .* at most 4 m/s"),
+        ([_waypoint(x=40.0)], "waypoint 1: needs 20.0 m/s"),
+    ],
+)
+def test_waypoints_that_nobody_can_pass_are_refused_in_one_line(waypoints, says):
+    with pytest.raises(RequestError, match=says) as caught:
+        MotionRequest.from_dict({"segments": [_segment()], "waypoints": waypoints})
+    assert "\n" not in str(caught.value)
+
+
+def _edit(**changes):
+    return {"motion": "motion.npz", "regenerate": ["head"], **changes}
+
+
+@pytest.mark.parametrize(
+    ("edit", "says"),
+    [
+        ("motion.npz", "edit: must be a mapping with the fields motion, regenerate, keep"),
+        ({"regenerate": ["head"]}, "'motion' must be the name of a file"),
+        (_edit(motion=""), "no file"),
+        (_edit(parts=["head"]), "unknown field 'parts'"),
+        (_edit(regenerate=[]), "keeps nothing"),
+        (_edit(regenerate="head"), "must be a list of names"),
+        (_edit(regenerate=["tail"]), "left_arm, right_arm, torso, head, legs"),
+        (_edit(regenerate=["head", "head"]), "named twice"),
+        (_edit(keep=1.0), "must be a list"),
+        (_edit(keep=[1.0]), "span 1 of 'keep' must be \\[start, end\\]"),
+        (_edit(keep=[["a", "b"]]), "must be a number"),
+        (_edit(keep=[[0.0, math.nan]]), "must be finite"),
+        (_edit(keep=[[2.0, 1.0]]), "end after its start"),
+        (_edit(keep=[[2.0, 5.0]]), "after the motion's 4 s"),
+        (_edit(keep=[[1.0, 3.0], [2.0, 4.0]]), "span 2 to keep starts at 2 s, before the end"),
+    ],
+)
+def test_edits_that_make_no_sense_are_refused_in_one_line(edit, says):
+    with pytest.raises(RequestError, match=says) as caught:
+        MotionRequest.from_dict({"segments": [_segment()], "edit": edit})
+    assert "\n" not in str(caught.value)
+
+
+def test_an_edited_motion_has_its_own_path():
+    with pytest.raises(RequestError, match="leave out waypoints"):
+        MotionRequest.from_dict(
+            {"segments": [_segment()], "edit": _edit(), "waypoints": [_waypoint()]}
+        )
+
+
+def test_spans_are_read_as_people_type_them():
+    assert parse_spans("0-1.5, 4-6") == ((0.0, 1.5), (4.0, 6.0))
+    for text in ("", "1", "a-b", "1-2-3", "1-2,"):
+        with pytest.raises(RequestError, match=r"write: 0-1\.5,4-6"):
+            parse_spans(text)
 
 
 def test_neighbours_may_overlap_by_the_blend():

@@ -13,8 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from motiondiffuse_ros.cli.parsing import parse
-from motiondiffuse_ros.errors import MotionFileError
-from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion_file import read_motion
 
 _COLOURS = {"plausible": "green", "marginal": "yellow", "implausible": "red"}
 
@@ -71,7 +70,7 @@ def check(
     from motiondiffuse_ros.robots import get_robot
 
     limits = get_robot(robot)
-    motion = _load(file)
+    motion = read_motion(file)
     console = Console()
     columns = (TextColumn("{task.description:>12}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -93,18 +92,6 @@ def check(
         report.save(out)
         console.print(f"written to {out}", highlight=False)
     return 1 if strict and report.verdict == "implausible" else 0
-
-
-def _load(file: Path) -> Motion:
-    if not file.is_file():
-        raise MotionFileError(f"{file}: no such file")
-    if file.suffix == ".npz":
-        return Motion.load_npz(file)
-    if file.suffix == ".bvh":
-        from motiondiffuse_ros.corpus import load_motion
-
-        return load_motion(file)
-    raise MotionFileError(f"{file}: a motion is a .bvh or a .npz file")
 
 
 def _table(metrics: dict[str, float | None]) -> Table:

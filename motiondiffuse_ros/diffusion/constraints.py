@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
+import torch
 from torch import Tensor
+
+from motiondiffuse_ros.corpus.statistics import Statistics
 
 
 class Constraint(Protocol):
@@ -38,3 +41,18 @@ class KeptFeatures:
     def __call__(self, clean: Tensor) -> Tensor:
         """Return clean features [C, T, D] with the given ones in their places."""
         return clean + self._mask * (self._values - clean)
+
+
+class OnPlainFeatures:
+    """A constraint on features as they are, not normalised."""
+
+    def __init__(self, constraint: Callable[[Tensor], Tensor], statistics: Statistics) -> None:
+        """Take the constraint and how the denoiser's features were normalised."""
+        self._constraint = constraint
+        self._mean = torch.from_numpy(statistics.mean)
+        self._std = torch.from_numpy(statistics.std)
+
+    def __call__(self, clean: Tensor) -> Tensor:
+        """Return normalised clean features [C, T, D] that satisfy it."""
+        mean, std = self._mean.to(clean.device), self._std.to(clean.device)
+        return (self._constraint(clean * std + mean) - mean) / std

@@ -11,11 +11,14 @@ import torch
 
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
+from motiondiffuse_ros.diffusion.constraints import Constraint, KeptFeatures, OnPlainFeatures
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
-from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
+from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
-from motiondiffuse_ros.motion.features import REPRESENTATIONS, Representation
+from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
+from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
+from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
 
 _BATCH_ROWS = 32
@@ -109,6 +112,34 @@ class MotionPipeline:
         """Hash of the weights file."""
         return self._checkpoint.sha256
 
+    def on_path(self, points: Sequence[PathPoint], frames: int) -> Constraint:
+        """Return the constraint that the root passes points; see `RootPath`.
+
+        Raises:
+            RequestError: If the model's representation has no root path that can be bent.
+        """
+        if not isinstance(self._representation, PoseState):
+            raise RequestError(
+                f"these weights speak {self._representation.name}; keeping to places in the world "
+                f"needs weights of {PoseState.name}"
+            )
+        path = RootPath(points, frames, self.fps)
+        return OnPlainFeatures(path, self._checkpoint.statistics)
+
+    def keeping(self, motion: Motion, mask: Array) -> Constraint:
+        """Return the constraint that some features are those of a motion.
+
+        Args:
+            motion: At the model's frame rate, as long as what is sampled.
+            mask: [T, D] from 0 (free) to 1 (kept).
+        """
+        values = self._checkpoint.statistics.normalise(self._representation.encode(motion))
+        device = self._checkpoint.denoiser.device
+        return KeptFeatures(
+            torch.from_numpy(values.astype("float32")).to(device),
+            torch.from_numpy(mask.astype("float32")).to(device),
+        )
+
     def __call__(
         self,
         texts: tuple[TimedText, ...],
@@ -118,6 +149,7 @@ class MotionPipeline:
         candidates: int,
         seed: int,
         blend_frames: int,
+        constraints: Sequence[Constraint] = (),
         on_step: Callable[[int, int], None] | None = None,
         cancelled: Callable[[], bool] | None = None,
     ) -> Samples:
@@ -142,6 +174,7 @@ class MotionPipeline:
             frames=frames,
             candidates=candidates,
             seed=seed,
+            constraints=constraints,
             on_step=on_step,
             cancelled=cancelled,
         )

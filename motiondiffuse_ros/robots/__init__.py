@@ -3,6 +3,7 @@
 from motiondiffuse_ros.robots.registry import available_robots, get_robot
 from motiondiffuse_ros.robots.retargeting import retarget, to_joint_positions
 from motiondiffuse_ros.robots.robot import Robot, RobotDescription
+from motiondiffuse_ros.robots.start_state import RootState, StartState
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
 from motiondiffuse_ros.robots.trajectory_builder import build_trajectory
 from motiondiffuse_ros.robots.validation import broken_promises
@@ -11,6 +12,8 @@ __all__ = [
     "JointTrajectory",
     "Robot",
     "RobotDescription",
+    "RootState",
+    "StartState",
     "available_robots",
     "broken_promises",
     "build_trajectory",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import convolve1d, maximum_filter1d
 
 from motiondiffuse_ros.motion.rotations import Array
@@ -12,11 +14,13 @@ _STEP = 0.005
 _HALO = 0.1
 
 
-def slow_down(path: CubicSpline, end: float, limits: Array) -> tuple[PchipInterpolator, float]:
+def slow_down(
+    path: Callable[..., Array], end: float, limits: Array
+) -> tuple[PchipInterpolator, float]:
     """Find the time at which each point of a path may be passed.
 
     Args:
-        path: Joint positions [J] over path time, rad.
+        path: Joint positions [N, J] at path times [N], rad, or their nth derivative.
         end: Path time at the end [s].
         limits: Largest speeds [J], rad/s.
 

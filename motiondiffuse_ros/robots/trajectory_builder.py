@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, RotationSpline
@@ -10,8 +12,10 @@ from motiondiffuse_ros.errors import RobotError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.robots.joining import MERGE, JoinedPaths, Paths, join
 from motiondiffuse_ros.robots.retargeting import RobotMotion, retarget
 from motiondiffuse_ros.robots.robot import Robot
+from motiondiffuse_ros.robots.start_state import StartState
 from motiondiffuse_ros.robots.time_scaling import come_to_rest, slow_down
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
 
@@ -21,11 +25,14 @@ STOP_WINDOW = 0.5
 SOFT_LIMIT = np.radians(2.0)
 """Positions bend away from a limit over the last two degrees before it."""
 
+_LEAST_BEND = np.radians(0.05)
 _SPEED_MARGIN = 0.99
 """Speeds are checked on a grid of path times; between its points they may be a little higher."""
 
 
-def build_trajectory(robot: Robot, motion: Motion, rate: float = 50.0) -> JointTrajectory:
+def build_trajectory(
+    robot: Robot, motion: Motion, rate: float = 50.0, start: StartState | None = None
+) -> JointTrajectory:
     """Sample a motion for a robot's controller.
 
     C2 splines through the retargeted frames; it starts at the first frame with that frame's
@@ -34,14 +41,19 @@ def build_trajectory(robot: Robot, motion: Motion, rate: float = 50.0) -> JointT
     stay on their path. Positions are bent softly into their limits, and where a joint would be
     too fast the whole body slows down for a moment; `notes` says so.
 
+    With a start state the first point has exactly its positions and velocities. The gap to the
+    motion closes smoothly over half a second or a little more; one that is too wide for that is
+    closed in an approach, and the motion follows after it.
+
     Args:
         robot: Who moves.
         motion: Finite; one frame yields a trajectory that holds it.
         rate: Points a second.
+        start: Where the robot is when the trajectory begins; None = at the motion's first frame.
 
     Raises:
-        RobotError: If the rate is not positive, the motion not finite, or the robot cannot take
-            such motions.
+        RobotError: If the rate is not positive, the motion or the start state not finite or of
+            another robot, or the robot cannot take such motions.
     """
     if not (np.isfinite(rate) and rate > 0.0):
         raise RobotError(f"a trajectory needs a positive rate in Hz, got {rate}")
@@ -55,8 +67,18 @@ def build_trajectory(robot: Robot, motion: Motion, rate: float = 50.0) -> JointT
         notes.append("the motion is a single frame: the trajectory holds it")
 
     knots = np.arange(len(joints)) / frames.fps
-    path = CubicSpline(knots, joints)
-    end = float(knots[-1])
+    turns = Rotation.from_quat(frames.root_orientation, scalar_first=True)
+    paths: Paths | JoinedPaths = Paths(
+        CubicSpline(knots, joints),
+        CubicSpline(knots, frames.root_position),
+        RotationSpline(knots, turns),
+        float(knots[-1]),
+    )
+    if start is not None:
+        start, said = _checked(robot, start)
+        paths = join(paths, start, _SPEED_MARGIN * robot.velocity_limits, STOP_WINDOW)
+        notes += said + _joining_notes(paths)
+    path, end = paths.joints, paths.end
     schedule, slowed_end = slow_down(path, end, _SPEED_MARGIN * robot.velocity_limits)
     if slowed_end - end > 1e-6:
         fast = np.max(np.abs(path(np.linspace(0, end, 10 * len(knots)), 1)), axis=0)
@@ -70,13 +92,17 @@ def build_trajectory(robot: Robot, motion: Motion, rate: float = 50.0) -> JointT
     warped = come_to_rest(times, times[-1], min(STOP_WINDOW, float(times[-1])))
     path_times = np.clip(schedule(np.minimum(warped, slowed_end)), 0.0, end)
 
-    positions = _soft_clamp(path(path_times), robot.lower, robot.upper)
-    root_position = CubicSpline(knots, frames.root_position)(path_times)
-    turns = Rotation.from_quat(frames.root_orientation, scalar_first=True)
-    orientation = RotationSpline(knots, turns)(path_times).as_quat(scalar_first=True)
-    orientation = rot.continuous(orientation)
+    lower, upper = _bending(robot, start)
+    positions = _soft_clamp(path(path_times), robot.lower, robot.upper, lower, upper)
+    root_position = paths.root(path_times)
+    orientation = rot.continuous(paths.orientation(path_times))
     # only the first, extrapolated from the points after it, can be beyond the limit
     speeds = np.clip(_differences(positions, rate), -robot.velocity_limits, robot.velocity_limits)
+    linear, angular = _differences(root_position, rate), _spin(orientation, rate)
+    if start is not None:
+        positions[0], speeds[0] = start.positions, start.velocities
+        if start.root is not None:
+            linear[0], angular[0] = start.root.linear_velocity, start.root.angular_velocity
     return JointTrajectory(
         joint_names=robot.joint_names,
         times=times,
@@ -84,10 +110,39 @@ def build_trajectory(robot: Robot, motion: Motion, rate: float = 50.0) -> JointT
         velocities=_to_rest(speeds),
         root_position=root_position,
         root_orientation=orientation,
-        root_linear_velocity=_to_rest(_differences(root_position, rate)),
-        root_angular_velocity=_to_rest(_spin(orientation, rate)),
+        root_linear_velocity=_to_rest(linear),
+        root_angular_velocity=_to_rest(angular),
         notes=tuple(notes),
     )
+
+
+def _checked(robot: Robot, start: StartState) -> tuple[StartState, list[str]]:
+    """Return a start state inside the limits, and what had to be changed for that."""
+    shape = (len(robot.joint_names),)
+    if start.positions.shape != shape or start.velocities.shape != shape:
+        raise RobotError(
+            f"a start state of {robot.name} has {shape[0]} joint positions and velocities, got "
+            f"{start.positions.shape} and {start.velocities.shape}"
+        )
+    root = () if start.root is None else vars(start.root).values()
+    if not all(np.isfinite(a).all() for a in (start.positions, start.velocities, *root)):
+        raise RobotError("the start state holds values that are not finite")
+    positions = np.clip(start.positions, robot.lower, robot.upper)
+    speeds = np.clip(start.velocities, -robot.velocity_limits, robot.velocity_limits)
+    said = [
+        f"{robot.joint_names[j]} starts at its limit, it is said to be "
+        f"{np.degrees(abs(start.positions[j] - positions[j])):.0f} degrees beyond it"
+        for j in np.flatnonzero(np.abs(start.positions - positions) > SOFT_LIMIT)
+    ]
+    return replace(start, positions=positions, velocities=speeds), said
+
+
+def _joining_notes(joined: JoinedPaths) -> list[str]:
+    if joined.approach > 0.0:
+        return [f"starts with an approach of {joined.approach:.2f} s to the motion's first pose"]
+    if joined.merge > MERGE:
+        return [f"joins the motion over its first {joined.merge:.2f} s"]
+    return []
 
 
 def _inside_limits(robot: Robot, joints: Array) -> tuple[Array, list[str]]:
@@ -100,14 +155,30 @@ def _inside_limits(robot: Robot, joints: Array) -> tuple[Array, list[str]]:
     return np.clip(joints, robot.lower, robot.upper), notes
 
 
-def _soft_clamp(positions: Array, lower: Array, upper: Array) -> Array:
-    """Bend positions beyond limit - SOFT_LIMIT into the limit: C2 and strictly inside."""
-    high = positions - (upper - SOFT_LIMIT)
-    low = positions - (lower + SOFT_LIMIT)
-    bent = np.where(
-        high > 0, upper - SOFT_LIMIT + SOFT_LIMIT * np.tanh(high / SOFT_LIMIT), positions
+def _bending(robot: Robot, start: StartState | None) -> tuple[Array, Array]:
+    """Return how far from the lower and the upper limits positions begin to bend [J], rad.
+
+    Not where the robot starts, which is nearer to a limit if a bent trajectory has led there.
+    """
+    full = np.full(len(robot.joint_names), SOFT_LIMIT)
+    if start is None:
+        return full, full
+    return (
+        np.clip(start.positions - robot.lower, _LEAST_BEND, SOFT_LIMIT),
+        np.clip(robot.upper - start.positions, _LEAST_BEND, SOFT_LIMIT),
     )
-    return np.where(low < 0, lower + SOFT_LIMIT + SOFT_LIMIT * np.tanh(low / SOFT_LIMIT), bent)
+
+
+def _soft_clamp(
+    positions: Array, lower: Array, upper: Array, low_width: Array, high_width: Array
+) -> Array:
+    """Bend positions within a width of a limit, and beyond it, into the limit: C2 and inside."""
+    high = positions - (upper - high_width)
+    low = positions - (lower + low_width)
+    bent = np.where(
+        high > 0, upper - high_width + high_width * np.tanh(high / high_width), positions
+    )
+    return np.where(low < 0, lower + low_width + low_width * np.tanh(low / low_width), bent)
 
 
 def _differences(values: Array, rate: float) -> Array:

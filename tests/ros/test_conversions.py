@@ -11,10 +11,11 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Header
 from synthetic import waving
 
+from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import InputError, RequestError
 from motiondiffuse_ros.motion import PARTS
+from motiondiffuse_ros.msg import MotionEdit, PlausibilityReport
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
-from motiondiffuse_ros.msg import PlausibilityReport
 from motiondiffuse_ros.physics.report import METRICS, Report
 from motiondiffuse_ros.request import MotionRequest, Segment
 from motiondiffuse_ros.robots import build_trajectory, get_robot
@@ -26,6 +27,7 @@ from motiondiffuse_ros.ros.conversions import (
     root_trajectory_to_message,
     trajectory_from_messages,
 )
+from motiondiffuse_ros.waypoint import Waypoint
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 segments = st.builds(
@@ -34,6 +36,13 @@ segments = st.builds(
     start=numbers,
     end=numbers,
     parts=st.lists(st.sampled_from(tuple(PARTS)), max_size=3).map(tuple),
+)
+waypoints = st.builds(Waypoint, time=numbers, x=numbers, y=numbers, heading=st.none() | numbers)
+edits = st.builds(
+    Edit,
+    motion=st.text("abc/.", min_size=1, max_size=20),
+    regenerate=st.lists(st.sampled_from(tuple(PARTS)), max_size=3).map(tuple),
+    keep=st.lists(st.tuples(numbers, numbers), max_size=3).map(tuple),
 )
 requests = st.builds(
     MotionRequest,
@@ -44,6 +53,8 @@ requests = st.builds(
     steps=st.none() | st.integers(1, 1000),
     candidates=st.none() | st.integers(1, 64),
     robot=st.sampled_from(["humanoid", "g1"]),
+    waypoints=st.lists(waypoints, max_size=3).map(tuple),
+    edit=st.none() | edits,
 )
 
 
@@ -62,6 +73,12 @@ def test_an_empty_message_leaves_everything_to_the_node():
 def test_a_negative_seed_is_refused():
     with pytest.raises(RequestError, match="seed is -2"):
         request_from_message(MotionRequestMsg(seed=-2), robot="humanoid")
+
+
+def test_spans_without_an_end_are_refused():
+    edit = MotionEdit(file="a.npz", keep_start=[0.0, 2.0], keep_end=[1.0])
+    with pytest.raises(RequestError, match="2 starts of spans to keep and 1 ends"):
+        request_from_message(MotionRequestMsg(edit=edit), robot="humanoid")
 
 
 def test_a_trajectory_survives_the_wire():

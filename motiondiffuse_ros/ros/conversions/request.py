@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
+from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RequestError
+from motiondiffuse_ros.msg import MotionEdit as MotionEditMsg
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.msg import MotionSegment as MotionSegmentMsg
+from motiondiffuse_ros.msg import Waypoint as WaypointMsg
 from motiondiffuse_ros.physics.report import TimedText
 from motiondiffuse_ros.request import MotionRequest, Segment
+from motiondiffuse_ros.waypoint import Waypoint
 
 DRAWN = -1
 """Seed of a message that leaves the choice to the node."""
@@ -20,7 +26,7 @@ def request_from_message(message: MotionRequestMsg, *, robot: str) -> MotionRequ
         robot: Used where the message names none.
 
     Raises:
-        RequestError: If the seed is negative and not -1.
+        RequestError: If the seed is negative and not -1, or spans of an edit lack an end.
     """
     if message.seed < DRAWN:
         raise RequestError(f"seed is {message.seed}; it is 0 or more, or {DRAWN} to draw one")
@@ -32,6 +38,8 @@ def request_from_message(message: MotionRequestMsg, *, robot: str) -> MotionRequ
         steps=message.steps or None,
         candidates=message.candidates or None,
         robot=message.robot or robot,
+        waypoints=tuple(_waypoint_from_message(waypoint) for waypoint in message.waypoints),
+        edit=_edit_from_message(message.edit),
     )
 
 
@@ -45,6 +53,8 @@ def request_to_message(request: MotionRequest) -> MotionRequestMsg:
         steps=int(request.steps or 0),
         candidates=int(request.candidates or 0),
         robot=request.robot,
+        waypoints=[_waypoint_to_message(waypoint) for waypoint in request.waypoints],
+        edit=_edit_to_message(request.edit),
     )
 
 
@@ -60,3 +70,40 @@ def segment_to_message(segment: TimedText) -> MotionSegmentMsg:
 
 def _segment_from_message(message: MotionSegmentMsg) -> Segment:
     return Segment(message.text, message.start, message.end, tuple(message.parts))
+
+
+def _waypoint_to_message(waypoint: Waypoint) -> WaypointMsg:
+    return WaypointMsg(
+        time=float(waypoint.time),
+        x=float(waypoint.x),
+        y=float(waypoint.y),
+        heading=math.nan if waypoint.heading is None else float(waypoint.heading),
+    )
+
+
+def _waypoint_from_message(message: WaypointMsg) -> Waypoint:
+    heading = None if math.isnan(message.heading) else message.heading
+    return Waypoint(message.time, message.x, message.y, heading)
+
+
+def _edit_to_message(edit: Edit | None) -> MotionEditMsg:
+    if edit is None:
+        return MotionEditMsg()
+    return MotionEditMsg(
+        file=edit.motion,
+        regenerate=list(edit.regenerate),
+        keep_start=[float(start) for start, _ in edit.keep],
+        keep_end=[float(end) for _, end in edit.keep],
+    )
+
+
+def _edit_from_message(message: MotionEditMsg) -> Edit | None:
+    if len(message.keep_start) != len(message.keep_end):
+        raise RequestError(
+            f"edit: {len(message.keep_start)} starts of spans to keep and "
+            f"{len(message.keep_end)} ends; every span needs both"
+        )
+    if not (message.file or message.regenerate or message.keep_start):
+        return None
+    spans = zip(message.keep_start, message.keep_end, strict=True)
+    return Edit(message.file, tuple(message.regenerate), tuple(spans))
