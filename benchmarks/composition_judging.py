@@ -53,8 +53,6 @@ class Settings:
     """Time over which neighbours are blended, s."""
     corrections: tuple[float, ...] = (0.0, 0.5, 1.0)
     """λ of the rows of eq. 10 or eq. 11."""
-    bf16: bool = False
-    """Evaluate the denoiser in bfloat16, as the planner does."""
     seed: int = 0
     """Of all noise and draws."""
     json: Path | None = None
@@ -76,9 +74,7 @@ class Bench:
         )
         self.composer = Composer(
             settings.weights or shipped("base"),
-            SamplerConfig(
-                steps=settings.steps, guidance_scale=settings.guidance_scale, bf16=settings.bf16
-            ),
+            SamplerConfig(steps=settings.steps, guidance_scale=settings.guidance_scale),
             settings.seed,
             settings.blend,
         )

@@ -89,8 +89,7 @@ def test_retrieval_finds_a_text_by_its_own_vector_and_counts_ties_as_wrong(encod
 
 @pytest.fixture(scope="module")
 def composer():
-    config = SamplerConfig(steps=2, bf16=False)
-    return Composer(shipped("base"), config, seed=0, blend_seconds=0.5)
+    return Composer(shipped("base"), SamplerConfig(steps=2), seed=0, blend_seconds=0.5)
 
 
 def test_requests_of_a_group_do_not_touch_each_other(composer):
@@ -100,8 +99,9 @@ def test_requests_of_a_group_do_not_touch_each_other(composer):
     both = composer.sample(requests, "", part_correction=0.5, apart_above=0.25)
     again = composer.sample(changed, "", part_correction=0.5, apart_above=0.25)
     assert [len(x) for x in both] == [r.frames for r in requests]
-    np.testing.assert_allclose(both[0], again[0], atol=1e-4)
-    assert np.abs(both[1] - again[1]).max() > 0.1
+    # batches of other lengths round otherwise: far less than another text makes
+    same, other_text = (np.abs(a - b).max() for a, b in zip(both, again, strict=True))
+    assert same < 0.05 * other_text
 
 
 def test_one_text_is_the_same_composed_or_pasted(composer):
