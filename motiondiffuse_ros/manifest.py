@@ -19,7 +19,7 @@ CONFIG_FILE = "config.json"
 
 
 def shipped(name: str) -> Path:
-    """Return a folder of weights that comes with the package: base, critic or evaluator."""
+    """Return a folder of weights that comes with the package: base, cmu or evaluator."""
     return Path(str(package_files("motiondiffuse_ros"))) / "weights" / name
 
 

@@ -3,8 +3,9 @@ from hypothesis import strategies as st
 
 from motiondiffuse_ros.corpus.importer import load_motion
 from motiondiffuse_ros.diffusion.composition import TimedText
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
 from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.selection import MATCH_MARGIN, choose, text_matches
 from motiondiffuse_ros.text import load_text_encoder
 
@@ -32,7 +33,7 @@ def test_without_a_match_the_most_plausible_wins():
 
 def test_real_clips_match_their_own_words_and_side_best(real_paths):
     clips = {p.stem.split("_")[1]: load_motion(p).resample(20.0) for p in real_paths}
-    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
+    critic = Evaluator.from_pretrained(critic_of(shipped_weights()), load_text_encoder("minilm"))
     asked = {
         "wave-right-hand": "a person waves with the right hand",
         "raise-up-left-hand": "a person raises the left hand",
@@ -49,6 +50,6 @@ def test_real_clips_match_their_own_words_and_side_best(real_paths):
 
 def test_texts_on_parts_and_short_ones_are_not_judged(real_paths):
     motion = load_motion(real_paths[0]).resample(20.0)
-    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
+    critic = Evaluator.from_pretrained(critic_of(shipped_weights()), load_text_encoder("minilm"))
     texts = (TimedText("waves", 0, 40, ("right_arm",)), TimedText("a person bows", 0, 10))
     assert text_matches(critic, PoseState(), [motion], texts) == [None]

@@ -13,6 +13,7 @@ from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
+from motiondiffuse_ros.diffusion.precision import check_precision, use_bf16
 from motiondiffuse_ros.diffusion.process import SCHEDULERS, from_clean, make_scheduler, to_clean
 from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
@@ -34,7 +35,7 @@ class SamplerConfig:
         apart_above: Noise level, as part of the training steps, above which texts on different
             parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
         eta: Noise re-injected by DDIM, 0 to 1.
-        bf16: Evaluate the denoiser under bfloat16 autocast.
+        precision: Arithmetic of the denoiser, one of `PRECISIONS`.
     """
 
     scheduler: str = "ddim"
@@ -45,7 +46,7 @@ class SamplerConfig:
     time_correction: float = 0.0
     apart_above: float = 1.0
     eta: float = 0.0
-    bf16: bool = True
+    precision: str = "auto"
 
     def validate(self) -> None:
         """Raise RequestError if a value is out of range."""
@@ -53,6 +54,7 @@ class SamplerConfig:
             raise RequestError(
                 f"unknown scheduler '{self.scheduler}'; the schedulers are {', '.join(SCHEDULERS)}"
             )
+        check_precision(self.precision)
         if not 1 <= self.steps <= 1000:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
         for name in ("part_correction", "time_correction", "apart_above", "eta"):
@@ -225,7 +227,8 @@ def _guided(
     """Return the prediction under classifier-free guidance."""
     scale = config.guidance_at(step / denoiser.config.train_steps)
     steps = torch.full((len(noisy),), step, device=noisy.device)
-    with torch.autocast(noisy.device.type, torch.bfloat16, enabled=config.bf16):
+    bf16 = use_bf16(config.precision, noisy.device)
+    with torch.autocast(noisy.device.type, torch.bfloat16, enabled=bf16):
         conditional = denoiser(noisy, steps, lengths, condition)
         if scale == 1.0:
             return conditional

@@ -12,7 +12,7 @@ import torch
 
 from motiondiffuse_ros.corpus.statements import OPPOSED, statements_of
 from motiondiffuse_ros.corpus.statistics import Statistics
-from motiondiffuse_ros.errors import TextEncoderError
+from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
 from motiondiffuse_ros.manifest import (
@@ -26,6 +26,9 @@ from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder
 
 FORMAT = 1
+CRITIC_FOLDER = "critic"
+"""Where a checkpoint's folder holds the critic it was trained with."""
+
 _NETWORK, _ACTIONS, _STATISTICS = (
     "text_motion.safetensors",
     "actions.safetensors",
@@ -39,9 +42,13 @@ def shipped_evaluator() -> Path:
     return shipped("evaluator")
 
 
-def shipped_critic() -> Path:
-    """Return the folder of the evaluator that training aligns texts with and plans choose by."""
-    return shipped("critic")
+def critic_of(weights: Path) -> Path:
+    """Return the folder of the evaluator that plans with some weights choose by.
+
+    It lies with the weights whose training aligned texts with it; others take the shipped one.
+    """
+    own = weights / CRITIC_FOLDER
+    return own if own.is_dir() else shipped("base") / CRITIC_FOLDER
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +57,7 @@ class Evaluator:
 
     Attributes:
         network: Text and motion encoders.
-        recogniser: Of actions.
+        recogniser: Of actions; None if no clip it was trained on had one.
         actions: Its classes.
         statistics: Normalisation of the features that both were trained with.
         representation: Name of these features.
@@ -59,7 +66,7 @@ class Evaluator:
     """
 
     network: TextMotionNetwork = field(repr=False)
-    recogniser: ActionNetwork = field(repr=False)
+    recogniser: ActionNetwork | None = field(repr=False)
     actions: tuple[str, ...]
     statistics: Statistics = field(repr=False)
     representation: str
@@ -86,11 +93,16 @@ class Evaluator:
 
     def embed_actions(self, features: Sequence[Array]) -> Array:
         """Return the recogniser's last hidden vectors [N, space]."""
-        return self._over(features, self.recogniser.embed)
+        return self._over(features, self._known_actions().embed)
 
     def recognise(self, features: Sequence[Array]) -> Array:
         """Return the index in `actions` that each motion is taken for [N]."""
-        return self._over(features, self.recogniser).argmax(axis=-1)
+        return self._over(features, self._known_actions()).argmax(axis=-1)
+
+    def _known_actions(self) -> ActionNetwork:
+        if self.recogniser is None:
+            raise CheckpointError("this evaluator was trained on clips without actions")
+        return self.recogniser
 
     @torch.inference_mode()
     def _over(
@@ -117,7 +129,10 @@ class Evaluator:
         """Write the folder; weights in float16."""
         folder.mkdir(parents=True, exist_ok=True)
         save_weights(self.network, folder / _NETWORK)
-        save_weights(self.recogniser, folder / _ACTIONS)
+        files = [_NETWORK, _STATISTICS]
+        if self.recogniser is not None:
+            save_weights(self.recogniser, folder / _ACTIONS)
+            files.append(_ACTIONS)
         self.statistics.save(folder / _STATISTICS)
         config = {
             "format": FORMAT,
@@ -126,7 +141,7 @@ class Evaluator:
             "representation": self.representation,
             "text_encoder_sha256": self.encoder.sha256,
         }
-        write_manifest(folder, config, (_NETWORK, _ACTIONS, _STATISTICS))
+        write_manifest(folder, config, files)
 
     @classmethod
     def from_pretrained(cls, folder: Path, encoder: TextEncoder) -> Evaluator:
@@ -142,7 +157,7 @@ class Evaluator:
             what="evaluator",
             format=FORMAT,
             fields=("evaluator", "actions", "representation", "text_encoder_sha256"),
-            files=(_NETWORK, _ACTIONS, _STATISTICS),
+            files=(_NETWORK, _STATISTICS),
         )
         if manifest["text_encoder_sha256"] != encoder.sha256:
             raise TextEncoderError(
@@ -151,9 +166,11 @@ class Evaluator:
             )
         config = EvaluatorConfig.from_dict(manifest["evaluator"])
         actions = tuple(manifest["actions"])
-        network, recogniser = TextMotionNetwork(config), ActionNetwork(config, len(actions))
+        network = TextMotionNetwork(config)
         load_weights(network, folder / _NETWORK, what="evaluator")
-        load_weights(recogniser, folder / _ACTIONS, what="evaluator")
+        recogniser = ActionNetwork(config, len(actions)) if actions else None
+        if recogniser is not None:
+            load_weights(recogniser, folder / _ACTIONS, what="evaluator")
         return cls(
             network,
             recogniser,

@@ -13,7 +13,7 @@ from torch import Tensor
 from torch.nn import functional as F
 
 from motiondiffuse_ros.corpus.store import Clip, Corpus
-from motiondiffuse_ros.errors import CorpusError
+from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.evaluation.actions import action_of, actions_of
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig, EvaluatorTraining
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
@@ -38,18 +38,10 @@ def train_evaluator(
     training: EvaluatorTraining,
     on_progress: Progress | None = None,
 ) -> Evaluator:
-    """Train both networks of an evaluator.
-
-    Raises:
-        CorpusError: If the corpus has no clip with an action (see `action_of`).
-    """
+    """Train the text-motion evaluator and, where clips have actions, the action recogniser."""
     clips = corpus.split("train")
-    labelled = [clip for clip in clips if action_of(clip) is not None]
-    if not labelled:
-        raise CorpusError("no clip of the corpus has an action in its name; see evaluation/actions")
     torch.manual_seed(training.seed)
-    actions = actions_of(labelled)
-    network, recogniser = TextMotionNetwork(config), ActionNetwork(config, len(actions))
+    network = TextMotionNetwork(config)
     captions = CaptionStates(all_captions(clips), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
@@ -64,26 +56,38 @@ def train_evaluator(
     pairs = _windows(corpus, clips, config, training, training.statements)
     _fit(network, pairs, pair_loss, training, training.minutes, "text and motion", on_progress)
 
-    index = {label: i for i, label in enumerate(actions)}
-    # the label takes the place of the captions, so that mirroring swaps it too
-    acts = [_with_label(clip) for clip in labelled]
-
-    def action_loss(batch: WindowBatch) -> Tensor:
-        logits = recogniser(batch.features, batch.lengths)
-        return F.cross_entropy(logits, torch.tensor([index[text] for text in batch.texts]))
-
-    windows = _windows(corpus, acts, config, training, 0.0)
-    _fit(
-        recogniser, windows, action_loss, training, training.action_minutes, "actions", on_progress
-    )
+    labelled = [_with_label(clip) for clip in clips if action_of(clip) is not None]
+    actions = actions_of(labelled)
+    recogniser = ActionNetwork(config, len(actions)) if actions else None
+    if recogniser is not None:
+        _fit_recogniser(recogniser, corpus, labelled, actions, config, training, on_progress)
     return Evaluator(
         network.eval(),
-        recogniser.eval(),
+        None if recogniser is None else recogniser.eval(),
         actions,
         corpus.statistics,
         corpus.representation.name,
         encoder,
     )
+
+
+def _fit_recogniser(
+    recogniser: ActionNetwork,
+    corpus: Corpus,
+    labelled: Sequence[Clip],
+    actions: Sequence[str],
+    config: EvaluatorConfig,
+    training: EvaluatorTraining,
+    on_progress: Progress | None,
+) -> None:
+    index = {label: i for i, label in enumerate(actions)}
+
+    def loss(batch: WindowBatch) -> Tensor:
+        logits = recogniser(batch.features, batch.lengths)
+        return F.cross_entropy(logits, torch.tensor([index[text] for text in batch.texts]))
+
+    windows = _windows(corpus, labelled, config, training, 0.0)
+    _fit(recogniser, windows, loss, training, training.action_minutes, "actions", on_progress)
 
 
 def not_wrong(batch: WindowBatch, pooled: Tensor) -> Tensor:
@@ -125,6 +129,7 @@ def _windows(
 
 
 def _with_label(clip: Clip) -> Clip:
+    """Put the label in the place of the captions, so that mirroring swaps it too."""
     label = action_of(clip)
     assert label is not None
     return Clip(clip.name, clip.dataset, clip.split, (label,), clip.start, clip.frames)
@@ -153,7 +158,7 @@ def _fit(
         warmup = min(1.0, done / 0.02 + 0.01)
         for group in optimizer.param_groups:
             group["lr"] = training.learning_rate * warmup * 0.5 * (1.0 + math.cos(math.pi * done))
-        with torch.autocast("cpu", torch.bfloat16):
+        with torch.autocast("cpu", torch.bfloat16, enabled=use_bf16("auto")):
             loss = loss_of(next(batches))
         optimizer.zero_grad(set_to_none=True)
         loss.backward()

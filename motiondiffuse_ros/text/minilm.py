@@ -30,7 +30,7 @@ class MiniLM:
         Raises:
             TextEncoderError: If the package is missing or its model file is not the pinned one.
         """
-        folder = _model_folder()
+        folder = model_folder()
         try:
             self.sha256 = file_sha256(folder / "model.safetensors")
         except OSError as error:
@@ -65,7 +65,8 @@ class MiniLM:
         return sort_out_padding(states, mask)
 
 
-def _model_folder() -> Path:
+def model_folder() -> Path:
+    """Return where MiniLM's files are; raises TextEncoderError if they are not installed."""
     spec = find_spec(_PACKAGE)
     if spec is None or spec.origin is None:
         raise TextEncoderError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from motiondiffuse_ros.diffusion.precision import check_precision
 from motiondiffuse_ros.errors import InputError
 
 
@@ -32,7 +33,7 @@ class TrainConfig:
         noisiest: Share of windows whose step is one of the noisiest 15 %; the others' is any.
         snr_limit: Largest weight of windows with little noise; 1 weighs all noise levels alike.
         ema_decay: Largest decay of the averaged weights.
-        bf16: Train under bfloat16 autocast.
+        precision: Arithmetic of the denoiser: auto, fp32 or bf16.
         seed: Of initial weights, batches and noise.
         save_minutes: Time between checkpoints.
         validate_steps: Steps between validations.
@@ -56,13 +57,14 @@ class TrainConfig:
     noisiest: float = 0.5
     snr_limit: float = 1.0
     ema_decay: float = 0.999
-    bf16: bool = True
+    precision: str = "auto"
     seed: int = 0
     save_minutes: float = 5.0
     validate_steps: int = 400
 
     def validate(self) -> None:
         """Raise InputError if a value is out of range."""
+        check_precision(self.precision)
         positive = ("minutes", "batch_size", "learning_rate", "save_minutes", "validate_steps")
         for name in positive:
             if not getattr(self, name) > 0:

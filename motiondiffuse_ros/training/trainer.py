@@ -19,9 +19,10 @@ from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
+from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.diffusion.process import make_scheduler, to_clean
 from motiondiffuse_ros.errors import CheckpointError
-from motiondiffuse_ros.evaluation.evaluator import Evaluator
+from motiondiffuse_ros.evaluation.evaluator import CRITIC_FOLDER, Evaluator
 from motiondiffuse_ros.text import TextEncoder
 from motiondiffuse_ros.training.alignment import TextAlignment
 from motiondiffuse_ros.training.config import TrainConfig
@@ -58,8 +59,8 @@ class TrainProgress:
 class Trainer:
     """Trains a denoiser on a corpus; can be stopped at any time and resumed.
 
-    Writes under `out`: checkpoint/ (averaged weights, as shipped), training_state.pt (to resume),
-    config.json, log.jsonl and TensorBoard events.
+    Writes under `out`: checkpoint/ (averaged weights and the critic, as shipped),
+    training_state.pt (to resume), config.json, log.jsonl and TensorBoard events.
     """
 
     def __init__(
@@ -96,6 +97,7 @@ class Trainer:
         assert isinstance(scheduler, DDPMScheduler)
         self._scheduler = scheduler
         self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
+        self._bf16 = use_bf16(config.precision)
         self._step, self._seconds = 0, 0.0
         out.mkdir(parents=True, exist_ok=True)
         if resume:
@@ -107,6 +109,7 @@ class Trainer:
         train, val = corpus.split("train"), corpus.split("val")
         texts = all_captions((*train, *val))
         self._captions = CaptionStates(texts, encoder, on_captions)
+        self._critic = critic
         self._alignment = (
             None if critic is None else TextAlignment(critic, texts, denoiser_config.time_width)
         )
@@ -185,6 +188,8 @@ class Trainer:
             self._out / CHECKPOINT_FOLDER
         )
         self._ema.restore(parameters)
+        if self._critic is not None:
+            self._critic.save_pretrained(self._out / CHECKPOINT_FOLDER / CRITIC_FOLDER)
         state = {
             "denoiser_config": self._denoiser.config.to_dict(),
             "denoiser": self._denoiser.state_dict(),
@@ -228,7 +233,7 @@ class Trainer:
         texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
         tokens = self._captions.batch(texts)
         noisy = self._scheduler.add_noise(clean, noise, steps)  # type: ignore[arg-type]
-        with torch.autocast("cpu", torch.bfloat16, enabled=self._config.bf16):
+        with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
             conditioning = self._denoiser.condition(tokens.states, tokens.mask)
             output = self._denoiser(noisy, steps, batch.lengths, conditioning)
         alpha = self._scheduler.alphas_cumprod[steps]

@@ -8,7 +8,7 @@ from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.text import load_text_encoder
 
-CONFIG = SamplerConfig(steps=2, bf16=False)
+CONFIG = SamplerConfig(steps=2, precision="fp32")
 
 
 @pytest.fixture

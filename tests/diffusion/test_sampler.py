@@ -25,7 +25,7 @@ def _sample(denoiser, *, windows=None, frames=40, candidates=2, seed=0, steps=4,
         windows,
         every.expand(torch.arange(len(windows))),
         every.expand(torch.tensor([len(windows)])),
-        SamplerConfig(steps=steps, bf16=False, **settings),
+        SamplerConfig(steps=steps, precision="fp32", **settings),
         frames=frames,
         candidates=candidates,
         seed=seed,
@@ -52,7 +52,7 @@ def test_two_half_weights_of_one_text_are_one_window(denoiser):
     with torch.inference_mode():
         text = denoiser.condition(states, mask)
     settings = {"frames": 40, "candidates": 1, "seed": 0}
-    config = SamplerConfig(steps=3, bf16=False)
+    config = SamplerConfig(steps=3, precision="fp32")
     one = sample(denoiser, [Window("a", 0, np.ones((40, dim)))], text, text, config, **settings)
     two = sample(
         denoiser, states_equal, text.expand(torch.tensor([0, 0])), text, config, **settings
@@ -99,7 +99,7 @@ def test_bad_guidance_intervals_are_refused(interval):
 def test_a_batch_of_one_is_a_window_over_everything(denoiser):
     conditioning = _conditioning(denoiser, 2)
     text, free = (conditioning.expand(torch.tensor([i])) for i in (0, 1))
-    config = SamplerConfig(steps=4, bf16=False)
+    config = SamplerConfig(steps=4, precision="fp32")
     lengths = torch.tensor([40])
     batch = sample_batch(denoiser, lengths, text, free, config, seed=0)
     window = [Window("a", 0, np.ones((40, denoiser.config.feature_dim)))]

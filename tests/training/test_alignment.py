@@ -1,7 +1,8 @@
 import pytest
 import torch
 
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
+from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.text import load_text_encoder
 from motiondiffuse_ros.training.alignment import TextAlignment
 
@@ -10,7 +11,7 @@ TEXTS = ["a person waves with the left hand", "a person waves with the right han
 
 @pytest.fixture(scope="module")
 def alignment():
-    critic = Evaluator.from_pretrained(shipped_critic(), load_text_encoder("minilm"))
+    critic = Evaluator.from_pretrained(critic_of(shipped_weights()), load_text_encoder("minilm"))
     return TextAlignment(critic, TEXTS, time_width=256)
 
 
