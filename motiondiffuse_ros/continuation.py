@@ -21,8 +21,6 @@ LEAD_IN = 1.0
 SETTLE = 1.0
 """Time over which a correction of the floor's height sets in after the seam [s]."""
 
-_RELEASE = (0.8, 0.6, 0.4, 0.2)  # pull of the motion carried on, at the frames after the seam
-
 
 @dataclass(frozen=True, eq=False)
 class Start:
@@ -70,11 +68,8 @@ def continue_from(lead_in: Motion, frames: int, fps: float, feature_dim: int) ->
     times = lead_in.duration - np.arange(before, -1, -1) / fps
     shown = sample_at(lead_in, np.maximum(times, 0.0), fps)
     motion = _carried_on(shown, before + frames).canonicalised()
-    soft = np.zeros((before + frames, feature_dim))
-    soft[: before + 1] = 1.0
-    after = soft[before + 1 : before + 1 + len(_RELEASE)]
-    after[:] = np.array(_RELEASE)[: len(after), None]
-    return Continuation(Kept(motion, np.floor(soft), soft), before)
+    rows = np.arange(motion.frames) <= before
+    return Continuation(Kept(motion, rows, np.zeros(feature_dim, dtype=bool)), before)
 
 
 def rejoin(motion: Motion, lead_in: Motion, frames: int) -> Motion:

@@ -13,10 +13,7 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.motion.parts import PARTS
 from motiondiffuse_ros.motion.root_path import PathPoint
-from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion_file import read_motion
-
-_EASE = (0.67, 0.33)  # pull of the old motion at the frames next to a kept span
 
 
 def kept_by(edit: Edit, frames: int, fps: float, representation: Representation) -> Kept:
@@ -39,26 +36,24 @@ def kept_by(edit: Edit, frames: int, fps: float, representation: Representation)
             f"{(frames - 1) / fps:.2f} s; they must be of one length"
         )
     motion = _of_length(motion, frames)
-    rows = np.zeros(frames)
+    rows = np.zeros(frames, dtype=bool)
     points: dict[int, PathPoint] = {}
     for start, end in edit.keep:
         first, last = round(start * fps), min(round(end * fps), frames - 1)
-        rows[first : last + 1] = 1.0
+        rows[first : last + 1] = True
         points |= {i: _point(motion, i) for i in (first, last) if i > 0}
-    columns = np.zeros(representation.dim)
+    columns = np.zeros(representation.dim, dtype=bool)
     if edit.regenerate:
         for part in set(PARTS) - set(edit.regenerate):
-            columns[representation.part_indices(part)] = 1.0
+            columns[representation.part_indices(part)] = True
     rooted = bool(columns[representation.part_indices("legs")].all())
-    firm = np.maximum(rows[:, None], columns)
-    soft = np.maximum(_eased(rows)[:, None], columns)
     # with the root kept in all frames, every frame is in its place already
-    return Kept(motion, firm, soft, () if rooted else tuple(points.values()))
+    return Kept(motion, rows, columns, () if rooted else tuple(points.values()))
 
 
 def keeps_height(kept: Kept, representation: Representation) -> bool:
     """Return whether some of the root's own frames are kept, so that heights may not be moved."""
-    return bool(kept.firm[:, representation.part_indices("legs")].any())
+    return bool(kept.mask[:, representation.part_indices("legs")].any())
 
 
 def _of_length(motion: Motion, frames: int) -> Motion:
@@ -72,12 +67,3 @@ def _of_length(motion: Motion, frames: int) -> Motion:
 def _point(motion: Motion, frame: int) -> PathPoint:
     x, y, _ = motion.root[frame].tolist()
     return PathPoint(frame, x, y, float(motion.heading[frame]))
-
-
-def _eased(rows: Array) -> Array:
-    """Let kept spans [T] fade over the frames next to them."""
-    out = rows.copy()
-    for distance, share in enumerate(_EASE, start=1):
-        out[distance:] = np.maximum(out[distance:], share * rows[:-distance])
-        out[:-distance] = np.maximum(out[:-distance], share * rows[distance:])
-    return out

@@ -24,15 +24,20 @@ class Kept:
 
     Attributes:
         motion: As long as what is sampled, at its rate; starts over the origin, facing +x.
-        firm: Features that the result has exactly [T, D], 0 or 1.
-        soft: How far the prediction is drawn to the features [T, D], 0 to 1; at least `firm`.
+        rows: Frames of which everything is kept [T], bool.
+        columns: Features that are kept in all frames [D], bool.
         points: Where the root has to be so that kept frames are in their places.
     """
 
     motion: Motion = field(repr=False)
-    firm: Array = field(repr=False)
-    soft: Array = field(repr=False)
+    rows: Array = field(repr=False)
+    columns: Array = field(repr=False)
     points: tuple[PathPoint, ...] = ()
+
+    @property
+    def mask(self) -> Array:
+        """What is kept [T, D], bool."""
+        return self.rows[:, None] | self.columns
 
 
 def constraints(
@@ -51,13 +56,13 @@ def constraints(
     """
     out: list[Constraint] = []
     places = (*(kept.points if kept else ()), *points)
-    if kept is not None and places:
-        out.append(pipeline.keeping(kept.motion, kept.soft))
+    if kept is not None and kept.rows.any():
+        out.append(pipeline.easing(kept.motion, kept.rows))
     if places:
         out.append(pipeline.on_path(places, frames))
     if kept is not None:
         # what bending the path did to kept frames is undone; the path between them stays bent
-        out.append(pipeline.keeping(kept.motion, kept.firm if places else kept.soft))
+        out.append(pipeline.keeping(kept.motion, kept.mask))
     return tuple(out)
 
 

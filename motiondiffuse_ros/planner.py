@@ -10,7 +10,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from motiondiffuse_ros.continuation import Continuation, Start, continue_from, placed, rejoin
+from motiondiffuse_ros.continuation import (
+    Continuation,
+    Start,
+    continue_from,
+    moved_to,
+    placed,
+    rejoin,
+)
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
@@ -21,11 +28,18 @@ from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
 from motiondiffuse_ros.kept import Kept, constraints, path_points
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
 from motiondiffuse_ros.physics.repair import put_on_floor
 from motiondiffuse_ros.physics.report import Report, assess, with_tracking
 from motiondiffuse_ros.request import LIMITS, MotionRequest
-from motiondiffuse_ros.robots import JointTrajectory, Robot, build_trajectory, get_robot
+from motiondiffuse_ros.robots import (
+    JointTrajectory,
+    Robot,
+    StartState,
+    build_trajectory,
+    get_robot,
+)
 from motiondiffuse_ros.selection import choose, text_matches
 
 _T = TypeVar("_T")
@@ -184,6 +198,24 @@ class Planner:
     def weights_sha256(self) -> str:
         """Hash of the weights file."""
         return self._pipeline.weights_sha256
+
+    @property
+    def fps(self) -> float:
+        """Frame rate of the motions, Hz."""
+        return self._pipeline.fps
+
+    def restarted(self, plan: Plan, state: StartState) -> Plan:
+        """Return a plan that starts from another state than it was made for.
+
+        Where the root's state is known the motion is moved there on the ground plane.
+        """
+        motion = plan.motion
+        if state.root is not None:
+            heading = float(rot.twist_angle(state.root.orientation, axis=2))
+            motion = moved_to(motion, state.root.position, heading)
+        robot = get_robot(plan.robot)
+        trajectory = build_trajectory(robot, motion, self.config.control_rate, state)
+        return replace(plan, motion=motion, trajectory=trajectory)
 
     def plan(
         self,

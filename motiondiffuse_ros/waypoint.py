@@ -52,6 +52,21 @@ class Waypoint:
         return cls(**given)
 
 
+def parse_waypoint(text: str) -> Waypoint:
+    """Read a waypoint as people type it, `time,x,y` or `time,x,y,heading`.
+
+    Raises:
+        RequestError: If it cannot be read.
+    """
+    try:
+        numbers = [float(piece) for piece in text.split(",")]
+        return Waypoint(*numbers)
+    except (ValueError, TypeError) as error:
+        raise RequestError(
+            f"{text!r} is not a waypoint; write TIME,X,Y or TIME,X,Y,HEADING: 3,2.0,0.5,1.57"
+        ) from error
+
+
 def validate_waypoints(waypoints: Sequence[Waypoint], duration: float) -> None:
     """Refuse waypoints that nobody can pass.
 

@@ -13,8 +13,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from motiondiffuse_ros.cli.parsing import parse
+from motiondiffuse_ros.edit import Edit, parse_spans
 from motiondiffuse_ros.errors import RequestError
+from motiondiffuse_ros.motion_file import read_motion
 from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.waypoint import parse_waypoint
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,14 @@ class Generate:
     """YAML file with timed segments and body parts."""
     seconds: float | None = None
     """Length of the motion [s]; 6 or, of a text with times, the end of the last."""
+    waypoints: tuple[str, ...] = ()
+    """Places of the root, each "TIME,X,Y" or "TIME,X,Y,HEADING": s, m ahead, m to the left, rad."""
+    edit: Path | None = None
+    """Motion (.npz or .bvh) of which a part is kept; the text says what becomes of the rest."""
+    regenerate: tuple[str, ...] = ()
+    """With --edit: body parts made anew; the others are kept."""
+    keep_frames: str | None = None
+    """With --edit: spans of time kept whole, as 0-1.5,4-6 [s]."""
     seed: int | None = None
     """Of all randomness; drawn and recorded if not given."""
     candidates: int | None = None
@@ -113,7 +124,17 @@ def _request(options: Generate) -> MotionRequest:
         assert options.text is not None
         if options.seconds is not None and not math.isfinite(options.seconds):
             raise RequestError(f"--seconds must be a finite number, got {options.seconds}")
-        request = MotionRequest.from_text(options.text, options.seconds)
+        seconds = options.seconds
+        if seconds is None and options.edit is not None:
+            seconds = read_motion(options.edit).duration
+        request = MotionRequest.from_text(options.text, seconds)
+    if options.waypoints:
+        request = replace(request, waypoints=tuple(map(parse_waypoint, options.waypoints)))
+    if options.edit is not None:
+        spans = () if options.keep_frames is None else parse_spans(options.keep_frames)
+        request = replace(request, edit=Edit(str(options.edit), options.regenerate, spans))
+    elif options.regenerate or options.keep_frames is not None:
+        raise RequestError("--regenerate and --keep-frames go with --edit FILE")
     names = ("seed", "candidates", "steps", "guidance_scale", "robot")
     given = {name: getattr(options, name) for name in names}
     return replace(request, **{name: value for name, value in given.items() if value is not None})

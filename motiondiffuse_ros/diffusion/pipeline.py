@@ -11,7 +11,12 @@ import torch
 
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
-from motiondiffuse_ros.diffusion.constraints import Constraint, KeptFeatures, OnPlainFeatures
+from motiondiffuse_ros.diffusion.constraints import (
+    Constraint,
+    Eased,
+    KeptFeatures,
+    OnPlainFeatures,
+)
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
 from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
@@ -20,6 +25,9 @@ from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Repres
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
+
+EASE = 0.6
+"""Time in which the difference between kept and predicted frames dies away next to them [s]."""
 
 _BATCH_ROWS = 32
 
@@ -131,14 +139,24 @@ class MotionPipeline:
 
         Args:
             motion: At the model's frame rate, as long as what is sampled.
-            mask: [T, D] from 0 (free) to 1 (kept).
+            mask: [T, D], bool.
         """
+        mask_values = torch.from_numpy(mask.astype("float32"))
+        return KeptFeatures(self._encoded(motion), mask_values.to(self._checkpoint.denoiser.device))
+
+    def easing(self, motion: Motion, rows: Array) -> Constraint:
+        """Return the constraint that frames next to those of a motion go on from them.
+
+        Args:
+            motion: At the model's frame rate, as long as what is sampled.
+            rows: Frames that are kept [T], bool.
+        """
+        kept = torch.from_numpy(rows).to(self._checkpoint.denoiser.device)
+        return Eased(self._encoded(motion), kept, round(EASE * self.fps))
+
+    def _encoded(self, motion: Motion) -> torch.Tensor:
         values = self._checkpoint.statistics.normalise(self._representation.encode(motion))
-        device = self._checkpoint.denoiser.device
-        return KeptFeatures(
-            torch.from_numpy(values.astype("float32")).to(device),
-            torch.from_numpy(mask.astype("float32")).to(device),
-        )
+        return torch.from_numpy(values.astype("float32")).to(self._checkpoint.denoiser.device)
 
     def __call__(
         self,

@@ -23,12 +23,14 @@ from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.planner import Planner, Progress
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import get_robot
+from motiondiffuse_ros.ros.continuity import Continuity
 from motiondiffuse_ros.ros.conversions import request_from_message
 from motiondiffuse_ros.ros.diagnostics import Diagnostics
 from motiondiffuse_ros.ros.parameter_spec import Parameters
 from motiondiffuse_ros.ros.parameters import PLANNER_PARAMETERS, complete, planner_config
 from motiondiffuse_ros.ros.plan_publisher import PlanPublisher
 from motiondiffuse_ros.ros.planning_queue import Job, NotActive, PlanningQueue
+from motiondiffuse_ros.ros.present_joints import PresentJoints
 from motiondiffuse_ros.ros.qos import COMMANDS
 from motiondiffuse_ros.ros.spinning import run_node
 
@@ -48,6 +50,8 @@ class _Configured:
 
     planner: Planner
     publisher: PlanPublisher
+    continuity: Continuity
+    joints: PresentJoints
 
 
 class MotionDiffuseNode(LifecycleNode):
@@ -92,7 +96,12 @@ class MotionDiffuseNode(LifecycleNode):
             self.get_logger().error(traceback.format_exc())
             return self._refuse_to_configure(f"{type(error).__name__}: {error}")
         publisher = PlanPublisher(self, self.settings["frame_id"], self.settings["control_rate"])
-        self._configured = _Configured(planner, publisher)
+        self._configured = _Configured(
+            planner,
+            publisher,
+            Continuity(planner, publisher.reference, self.get_clock()),
+            PresentJoints(self, self.settings["joint_states"]),
+        )
         self.settings.locked = True
         self._health.set("warn", "configured, not active")
         return TransitionCallbackReturn.SUCCESS
@@ -100,7 +109,7 @@ class MotionDiffuseNode(LifecycleNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Take work."""
         super().on_activate(state)
-        self._queue = PlanningQueue(self._plan)
+        self._queue = PlanningQueue(self._plan, lambda: self.settings["preempt"])
         if not self._inputs:
             self._inputs = self._create_inputs()
         self._health.set("ok", "ready")
@@ -175,6 +184,7 @@ class MotionDiffuseNode(LifecycleNode):
         self._inputs = []
         if self._configured is not None:
             self._configured.publisher.destroy()
+            self._configured.joints.destroy()
             self._configured = None
         self.settings.locked = False
 
@@ -192,10 +202,25 @@ class MotionDiffuseNode(LifecycleNode):
     ) -> MotionPlan:
         """Plan and publish; runs in the planning thread."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
-        plan = self._configured.planner.plan(request, progress=progress, cancelled=cancelled)
-        if self.settings["plan_dir"]:
+        planner, continuity = self._configured.planner, self._configured.continuity
+        seam = continuity.seam(request) if self.settings["continuity"] else None
+        plan = planner.plan(
+            request,
+            start=None if seam is None else seam.start,
+            progress=progress,
+            cancelled=cancelled,
+        )
+        continuity.learn(plan)
+        at = None
+        if seam is not None:
+            plan, at = continuity.fitted(plan, seam)
+        elif (present := self._configured.joints.state(get_robot(plan.robot))) is not None:
+            plan = planner.restarted(plan, present)
+        if self.settings["plan_dir"] and at is None:
             plan.save(Path(self.settings["plan_dir"]))
-        message = self._configured.publisher.publish(plan)
+        message = self._configured.publisher.publish(plan, at)
+        if self.settings["plan_dir"] and at is not None:  # after publication: its time is set
+            plan.save(Path(self.settings["plan_dir"]))
         self.get_logger().info(
             f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
             f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)

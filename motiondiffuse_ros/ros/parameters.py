@@ -40,6 +40,15 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
     ),
     "frame_id": ParameterSpec("map", "frame in which the root moves", at_configure=True),
+    "continuity": ParameterSpec(
+        True, "a plan made while another is executed goes on from that one's motion"
+    ),
+    "preempt": ParameterSpec(False, "a newer request also ends the planning in work"),
+    "joint_states": ParameterSpec(
+        "",
+        "topic of the robot's joints, where plans start if none is executed; empty = not used",
+        at_configure=True,
+    ),
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
     "steps": ParameterSpec(
         _DEFAULT.steps, "denoising steps of requests that set none", (1, LIMITS.max_steps)

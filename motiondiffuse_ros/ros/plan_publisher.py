@@ -5,6 +5,7 @@ from __future__ import annotations
 from uuid import uuid4
 
 from rclpy.lifecycle import LifecycleNode
+from rclpy.time import Time
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, MultiDOFJointTrajectory
 
@@ -37,14 +38,21 @@ class PlanPublisher:
         )
         self.reference = ReferenceStream(node, rate)
 
-    def publish(self, plan: Plan) -> MotionPlan:
-        """Publish a plan on all topics; its three messages share one header."""
-        header = Header(stamp=self._node.get_clock().now().to_msg(), frame_id=self._frame_id)
+    def publish(self, plan: Plan, at: Time | None = None) -> MotionPlan:
+        """Publish a plan on all topics; its three messages share one header.
+
+        Args:
+            plan: What to publish.
+            at: When its first point is due, and its stamp; until then `~/reference` goes on with
+                the plan before. None = now.
+        """
+        stamp = at or self._node.get_clock().now()
+        header = Header(stamp=stamp.to_msg(), frame_id=self._frame_id)
         message = plan_to_message(plan, header, plan_id=str(uuid4()))
         self._root.publish(message.root_trajectory)
         self._joints.publish(message.trajectory)
         self._plan.publish(message)
-        self.reference.start(plan.trajectory)
+        self.reference.start(plan.trajectory, at)
         return message
 
     def destroy(self) -> None:

@@ -1,4 +1,4 @@
-"""One motion is planned at a time, in a thread of its own; one more may wait."""
+"""One motion is planned at a time, in a thread of its own; one more may wait, or take over."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Result_co = TypeVar("Result_co", covariant=True)
 
 
 class Superseded(MotionDiffuseError):
-    """A newer request took the place of one that had not been started."""
+    """A newer request took the place of this one."""
 
     code = ErrorCode.SUPERSEDED
 
@@ -70,9 +70,15 @@ class Work(Protocol[Result_co]):
 class PlanningQueue(Generic[Result]):
     """Runs jobs one after another; of those that wait, only the newest is kept."""
 
-    def __init__(self, work: Work[Result]) -> None:
-        """Start the thread that calls `work`."""
-        self._work = work
+    def __init__(self, work: Work[Result], preempt: Callable[[], bool] = _never) -> None:
+        """Start the thread that calls `work`.
+
+        Args:
+            work: Called for one job after another.
+            preempt: Whether a newer job also ends the one that is worked on; asked at `submit`.
+        """
+        self._work, self._preempt = work, preempt
+        self._overtaken: Job[Result] | None = None
         self._pending: Job[Result] | None = None
         self._active: Job[Result] | None = None
         self._closed: MotionDiffuseError | None = None
@@ -87,7 +93,8 @@ class PlanningQueue(Generic[Result]):
             return self._active is not None or self._pending is not None
 
     def submit(self, job: Job[Result]) -> None:
-        """Queue a job; one that waits already ends with `Superseded`.
+        """Queue a job; one that waits already ends with `Superseded`, as does an active one if
+        newer jobs preempt.
 
         Raises:
             MotionDiffuseError: The error given to `close`, if the queue was closed.
@@ -96,6 +103,8 @@ class PlanningQueue(Generic[Result]):
             if self._closed is not None:
                 raise self._closed
             replaced, self._pending = self._pending, job
+            if self._preempt():
+                self._overtaken = self._active
             self._changed.notify_all()
         if replaced is not None:
             replaced.outcome.set_exception(
@@ -135,14 +144,19 @@ class PlanningQueue(Generic[Result]):
     def _finish(self, job: Job[Result]) -> None:
         def cancelled() -> bool:
             self.sweep()
-            return self._closed is not None or job.withdrawn()
+            return self._closed is not None or self._overtaken is job or job.withdrawn()
 
         try:
             result = self._work(job.request, progress=job.progress, cancelled=cancelled)
         except Cancelled as error:
-            job.outcome.set_exception(self._closed or error)
+            job.outcome.set_exception(self._closed or self._reason(job) or error)
         # an error of any kind belongs to whoever waits for the outcome; the thread goes on
         except Exception as error:
             job.outcome.set_exception(error)
         else:
             job.outcome.set_result(result)
+
+    def _reason(self, job: Job[Result]) -> MotionDiffuseError | None:
+        if self._overtaken is not job:
+            return None
+        return Superseded("a newer request took the place of this one while it was worked on")

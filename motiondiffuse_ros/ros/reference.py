@@ -1,17 +1,44 @@
-"""Set-points at the control rate, from the moment a plan is published."""
+"""Set-points at the control rate, from the moment a plan begins."""
 
 from __future__ import annotations
 
 from array import array
+from dataclasses import dataclass
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleNode
 from rclpy.time import Time
-from scipy.interpolate import CubicHermiteSpline
 from sensor_msgs.msg import JointState
 
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
+from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
 from motiondiffuse_ros.ros.qos import STREAM
+
+
+@dataclass(frozen=True, eq=False)
+class Playing:
+    """A trajectory and when it begins.
+
+    Attributes:
+        states: The trajectory.
+        start: Of its first point.
+        before: What is streamed until then.
+    """
+
+    states: TrajectoryState
+    start: Time
+    before: Playing | None = None
+
+    def elapsed(self, now: Time) -> float:
+        """Return the time since the first point [s]; negative before it."""
+        return (now - self.start).nanoseconds * 1e-9
+
+    def at(self, now: Time) -> Playing:
+        """Return what is streamed at a time: this, or what came before."""
+        playing = self
+        while playing.before is not None and playing.elapsed(now) < 0.0:
+            playing = playing.before
+        return playing
 
 
 class ReferenceStream:
@@ -26,15 +53,28 @@ class ReferenceStream:
         """
         self._node = node
         self._publisher = node.create_lifecycle_publisher(JointState, "~/reference", STREAM)
-        self._current: tuple[JointTrajectory, CubicHermiteSpline, Time] | None = None
+        self._current: Playing | None = None
         self._timer = node.create_timer(
             1.0 / rate, self._publish, MutuallyExclusiveCallbackGroup(), autostart=False
         )
 
-    def start(self, trajectory: JointTrajectory) -> None:
-        """Stream a trajectory from now on, in place of any other."""
-        path = CubicHermiteSpline(trajectory.times, trajectory.positions, trajectory.velocities)
-        self._current = (trajectory, path, self._node.get_clock().now())
+    @property
+    def playing(self) -> Playing | None:
+        """What is streamed, or about to be; None once it has come to its end."""
+        return self._current
+
+    def start(self, trajectory: JointTrajectory, at: Time | None = None) -> None:
+        """Stream a trajectory in place of any other.
+
+        Args:
+            trajectory: What to stream.
+            at: When its first point is due; the one before goes on until then. None = now.
+        """
+        now = self._node.get_clock().now()
+        before = self._current.at(now) if self._current is not None and at is not None else None
+        if before is not None:  # not the whole past
+            before = Playing(before.states, before.start)
+        self._current = Playing(TrajectoryState(trajectory), at or now, before)
         self._timer.reset()
 
     def stop(self) -> None:
@@ -53,17 +93,15 @@ class ReferenceStream:
         current = self._current
         if current is None:
             return
-        trajectory, path, start = current
         now = self._node.get_clock().now()
-        elapsed = (now - start).nanoseconds * 1e-9
-        message = JointState(name=list(trajectory.joint_names))
+        playing = current.at(now)
+        elapsed = playing.elapsed(now)
+        positions, velocities = playing.states.joints(elapsed)
+        message = JointState(name=list(playing.states.trajectory.joint_names))
         message.header.stamp = now.to_msg()
-        if elapsed < trajectory.duration:
-            message.position = array("d", path(elapsed))
-            message.velocity = array("d", path(elapsed, 1))
-        else:  # exactly at rest, without a spline's rounding
-            message.position = array("d", trajectory.positions[-1])
-            message.velocity = array("d", trajectory.velocities[-1])
-            if self._current is current:
-                self.stop()
+        message.position = array("d", positions)
+        message.velocity = array("d", velocities)
+        ended = elapsed >= playing.states.trajectory.duration
+        if ended and playing is current and self._current is current:
+            self.stop()
         self._publisher.publish(message)
