@@ -24,7 +24,7 @@ from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.editing import keeps_height, kept_by
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_critic
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
 from motiondiffuse_ros.kept import Kept, constraints, path_points
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
@@ -183,14 +183,14 @@ class Planner:
         self._pipeline = MotionPipeline.from_pretrained(
             weights, config.text_encoder, device=config.device
         )
-        self._critic = self._load_critic()
+        self._critic = self._load_critic(weights)
 
-    def _load_critic(self) -> Evaluator | None:
-        """Return the shipped critic, if it speaks of the same features and text encoder."""
+    def _load_critic(self, weights: Path) -> Evaluator | None:
+        """Return the critic of the weights, if it speaks of the same features and text encoder."""
         encoder = self._pipeline.encoder
         if encoder.name != EvaluatorConfig.text_encoder:
             return None
-        critic = Evaluator.from_pretrained(shipped_critic(), encoder)
+        critic = Evaluator.from_pretrained(critic_of(weights), encoder)
         known = critic.representation == self._pipeline.representation.name
         return critic if known else None
 
