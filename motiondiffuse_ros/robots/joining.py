@@ -29,6 +29,9 @@ WIDE = 0.5
 APPROACH_SPEED = 1.5
 """Speed of such an approach, joints and root [rad/s, m/s]."""
 
+RUN_IN = 0.5
+"""Of an approach, what is used to gather the motion's first speed [s]."""
+
 _PEAK = 1.875  # greatest speed of a quintic from rest to rest, in parts of its mean speed
 _GROWTH = 1.25
 _GRID = 0.01
@@ -95,10 +98,10 @@ def join(paths: Paths, start: StartState, limits: Array, stop_window: float) -> 
         if _fast(joined, merge + _CLEAR, limits) <= 1.0:
             return joined
         merge *= _GROWTH
-    approach = max(MERGE, _PEAK * gap / APPROACH_SPEED)
+    approach = max(RUN_IN, _PEAK * gap / APPROACH_SPEED)
     for _ in range(8):
         joined = _joined(paths, start, approach, approach)
-        if _fast(joined, approach - _CLEAR / 2, limits) <= 1.0:
+        if _fast(joined, _CLEAR, limits) <= 1.0:
             break
         approach *= _GROWTH
     return joined
@@ -138,18 +141,18 @@ def _joined(paths: Paths, start: StartState, approach: float, merge: float) -> J
 
 
 def _extended(path: CubicSpline, approach: float) -> Callable[..., Array]:
-    """Put a run-in from rest at the first point before a path."""
+    """Hold the first point before a path, then run in from rest to its speed and curvature."""
     if approach == 0.0:
         return path
     first, speed, curvature = (path(0.0, n) for n in range(3))
     still = np.zeros_like(first)
     run_in = BPoly.from_derivatives(
-        [0.0, approach], [[first, still, still], [first, speed, curvature]]
+        [0.0, RUN_IN], [[first, still, still], [first, speed, curvature]]
     )
 
     def extended(times: Array | float, derivative: int = 0) -> Array:
         times = np.asarray(times, dtype=float)
-        early = run_in(np.minimum(times, approach), derivative)
+        early = run_in(np.clip(times - approach + RUN_IN, 0.0, RUN_IN), derivative)
         late = path(np.maximum(times - approach, 0.0), derivative)
         return np.where(times[..., None] < approach, early, late)
 
@@ -161,10 +164,10 @@ def _extended_turn(paths: Paths, approach: float) -> Callable[[Array], Array]:
         return paths.orientation
     first = paths.orientation(np.zeros(1))
     spin, still = _spin(paths.orientation), np.zeros(3)
-    run_in = BPoly.from_derivatives([0.0, approach], [[still, still, still], [still, spin, still]])
+    run_in = BPoly.from_derivatives([0.0, RUN_IN], [[still, still, still], [still, spin, still]])
 
     def extended(times: Array) -> Array:
-        turned = rot.from_rotation_vector(run_in(np.minimum(times, approach)))
+        turned = rot.from_rotation_vector(run_in(np.clip(times - approach + RUN_IN, 0.0, RUN_IN)))
         late = paths.orientation(np.maximum(times - approach, 0.0))
         return np.where(times[:, None] < approach, rot.multiply(turned, first), late)
 
