@@ -6,11 +6,16 @@ import json
 import numpy as np
 import pytest
 
-from motiondiffuse_ros.errors import Cancelled, RequestError, RobotError
+from motiondiffuse_ros.continuation import Start
+from motiondiffuse_ros.edit import Edit
+from motiondiffuse_ros.errors import Cancelled, MotionFileError, RequestError, RobotError
 from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion import rotations as rot
+from motiondiffuse_ros.motion.parts import part_joints
 from motiondiffuse_ros.planner import Planner, PlannerConfig, timeline
 from motiondiffuse_ros.request import MotionRequest, Segment
 from motiondiffuse_ros.robots import broken_promises, get_robot
+from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
 from motiondiffuse_ros.waypoint import Waypoint
 
 
@@ -137,3 +142,92 @@ def test_the_root_passes_waypoints_in_motion_and_trajectory(planner):
         np.testing.assert_allclose(trajectory.root_position[point, :2], place, atol=0.15)
     assert motion.heading[-1] == pytest.approx(np.pi / 2, abs=np.radians(15.0))
     np.testing.assert_allclose(motion.root[0, :2], 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(("seam", "late", "text"), [(1.1, 0.0, "runs"), (2.3, 0.4, "bows")])
+def test_a_motion_goes_on_where_another_was_left(planner, plan, seam, late, text):
+    old, _ = plan
+    robot = get_robot("humanoid")
+    running = TrajectoryState(old.trajectory)
+    lead_in = running.motion_up_to(robot, seam, 1.0, planner.fps)
+    new = planner.plan(
+        MotionRequest.from_text(f"a person {text}", 3.0, seed=1, candidates=1),
+        start=Start(lead_in, running.at(seam)),
+    )
+    assert new.motion.duration == pytest.approx(3.0)
+    np.testing.assert_allclose(new.motion.positions[0], lead_in.positions[-1], atol=1e-3)
+    # it does not snap away from there: a twentieth of a second later every joint is near
+    step = np.linalg.norm(new.motion.positions[1] - lead_in.positions[-1], axis=1)
+    assert step.max() < 0.25
+
+    here = running.at(seam + late)
+    if late:
+        new = planner.restarted(new, here)
+    np.testing.assert_allclose(new.motion.root[0, :2], here.root.position[:2], atol=1e-2)
+    np.testing.assert_array_equal(new.trajectory.positions[0], here.positions)
+    np.testing.assert_array_equal(new.trajectory.velocities[0], here.velocities)
+    np.testing.assert_allclose(new.trajectory.root_position[0], here.root.position, atol=1e-9)
+    assert broken_promises(new.trajectory, robot) == ()
+
+
+def test_waypoints_of_a_continued_motion_count_from_its_start(planner, plan):
+    old, _ = plan
+    waypoint = Waypoint(2.5, 1.0, 1.0, 0.8)
+    new = planner.plan(
+        MotionRequest.from_text("a person walks", 3.0, seed=1, candidates=1, waypoints=(waypoint,)),
+        start=Start(old.motion.slice(0, 41)),
+    ).motion.canonicalised()
+    np.testing.assert_allclose(new.root[50, :2], [1.0, 1.0], atol=0.15)
+    assert new.heading[50] == pytest.approx(0.8, abs=np.radians(15.0))
+
+
+@pytest.fixture
+def saved(plan, tmp_path):
+    motion = plan[0].motion
+    motion.save_npz(tmp_path / "motion.npz")
+    return motion, str(tmp_path / "motion.npz")
+
+
+def edited(planner, edit, seconds=3.0):
+    text = "a person raises the left arm"
+    request = MotionRequest.from_text(text, seconds, seed=2, candidates=1, edit=edit)
+    return planner.plan(request).motion
+
+
+def turned_by(one, other):
+    """Return by how much each joint is turned at most [J], degrees."""
+    return np.degrees(rot.angle_between(one.rotations, other.rotations)).max(axis=0)
+
+
+def test_parts_that_are_kept_stay_and_the_others_are_made_anew(planner, saved):
+    motion, file = saved
+    turned = turned_by(edited(planner, Edit(file, ("left_arm",))), motion)
+    arm = list(part_joints("left_arm"))
+    assert np.delete(turned, arm).max() < 1.0
+    assert turned[arm].max() > 10.0
+
+
+def test_frames_that_are_kept_are_in_their_places_and_what_is_between_is_made_anew(planner, saved):
+    motion, file = saved
+    new = edited(planner, Edit(file, keep=((0.0, 0.5), (2.5, 3.0))))
+    moved = np.linalg.norm(new.positions - motion.positions, axis=2).max(axis=1)
+    assert moved[:11].max() < 0.02
+    assert moved[50:].max() < 0.02
+    assert moved[15:45].max() > 0.1
+    # no joint is thrown from the kept frames to the new ones
+    assert np.linalg.norm(np.diff(new.positions, axis=0), axis=2).max() < 0.4
+
+
+def test_an_edit_of_a_bvh_file_keeps_what_it_should(planner, plan, tmp_path):
+    plan[0].save(tmp_path)
+    file = str(tmp_path / "motion.bvh")
+    turned = turned_by(edited(planner, Edit(file, ("head",))), plan[0].motion)
+    assert np.delete(turned, list(part_joints("head"))).max() < 1.0
+
+
+def test_edits_that_do_not_fit_are_refused_before_any_work(planner, saved):
+    _, file = saved
+    with pytest.raises(RequestError, match=r"lasts 3\.00 s, the request's motion 5\.00 s"):
+        edited(planner, Edit(file, ("head",)), 5.0)
+    with pytest.raises(MotionFileError, match="no such file"):
+        edited(planner, Edit("none.npz", ("head",)))

@@ -123,3 +123,17 @@ def test_closing_ends_all_jobs_with_the_reason_and_refuses_new_ones(worker):
             ended.outcome.result(TIMEOUT)
     with pytest.raises(NotActive, match="deactivated"):
         queue.submit(job("run"))
+
+
+def test_where_newer_jobs_preempt_the_active_one_is_superseded(worker):
+    queue = PlanningQueue(worker, preempt=lambda: True)
+    active, newer = job("walk"), job("wave")
+    queue.submit(active)
+    started(worker)
+    queue.submit(newer)
+    with pytest.raises(Superseded, match="while it was worked on"):
+        active.outcome.result(TIMEOUT)
+    started(worker)
+    worker.go_on.release()
+    assert newer.outcome.result(TIMEOUT) == "wave"
+    queue.close(NotActive("the test is over"))
