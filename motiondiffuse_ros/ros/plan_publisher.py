@@ -46,13 +46,17 @@ class PlanPublisher:
             at: When its first point is due, and its stamp; until then `~/reference` goes on with
                 the plan before. None = now.
         """
-        stamp = at or self._node.get_clock().now()
-        header = Header(stamp=stamp.to_msg(), frame_id=self._frame_id)
+        if at is not None:  # it does not wait while the messages are made
+            self.reference.start(plan.trajectory, at)
+        header = Header(frame_id=self._frame_id)
         message = plan_to_message(plan, header, plan_id=str(uuid4()))
+        stamp = at or self._node.get_clock().now()
+        header.stamp = stamp.to_msg()  # shared by all three
+        if at is None:
+            self.reference.start(plan.trajectory, stamp)
         self._root.publish(message.root_trajectory)
         self._joints.publish(message.trajectory)
         self._plan.publish(message)
-        self.reference.start(plan.trajectory, at)
         return message
 
     def destroy(self) -> None:

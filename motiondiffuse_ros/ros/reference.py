@@ -63,18 +63,18 @@ class ReferenceStream:
         """What is streamed, or about to be; None once it has come to its end."""
         return self._current
 
-    def start(self, trajectory: JointTrajectory, at: Time | None = None) -> None:
+    def start(self, trajectory: JointTrajectory, at: Time) -> None:
         """Stream a trajectory in place of any other.
 
         Args:
             trajectory: What to stream.
-            at: When its first point is due; the one before goes on until then. None = now.
+            at: When its first point is due; the one before goes on until then.
         """
-        now = self._node.get_clock().now()
-        before = self._current.at(now) if self._current is not None and at is not None else None
+        current = self._current
+        before = None if current is None else current.at(self._node.get_clock().now())
         if before is not None:  # not the whole past
             before = Playing(before.states, before.start)
-        self._current = Playing(TrajectoryState(trajectory), at or now, before)
+        self._current = Playing(TrajectoryState(trajectory), at, before)
         self._timer.reset()
 
     def stop(self) -> None:
