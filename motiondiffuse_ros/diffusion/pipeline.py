@@ -181,13 +181,14 @@ class MotionPipeline:
             blend_frames=blend_frames,
         )
         began = time.perf_counter()
-        every = self._condition([*(w.text for w in windows), ""])
+        distinct = list(dict.fromkeys(w.text for w in windows))
+        every = self._condition([*distinct, ""])
         encoded = time.perf_counter()
         features = sample(
             denoiser,
             windows,
-            every.expand(torch.arange(len(windows))),
-            every.expand(torch.tensor([len(windows)])),
+            every.expand(torch.tensor([distinct.index(w.text) for w in windows])),
+            every.expand(torch.tensor([len(distinct)])),
             config,
             frames=frames,
             candidates=candidates,

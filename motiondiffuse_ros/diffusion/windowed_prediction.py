@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 import torch
@@ -14,7 +13,7 @@ from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
 from motiondiffuse_ros.diffusion.imagination import Imagination
 
-_BATCH_ROWS = 64  # bounds memory on long timelines with many candidates
+_BATCH_ROWS = 16  # bounds memory on long timelines with many candidates
 
 
 Predictor = Callable[[Tensor, int, Tensor, Conditioning, Conditioning], Tensor]
@@ -84,20 +83,22 @@ class WindowedPrediction:
         # windows of like length share a batch
         rows.sort(key=lambda row: len(self._weights[row[0]]))
         self._batches = [rows[i : i + _BATCH_ROWS] for i in range(0, len(rows), _BATCH_ROWS)]
-        self._conditions = [
-            conditioning.expand(torch.tensor([w for w, _ in batch])) for batch in self._batches
-        ]
-        self._unconditional = [
-            unconditional.expand(torch.zeros(len(batch), dtype=torch.long))
-            for batch in self._batches
-        ]
+        self._conditioning, self._unconditional = conditioning, unconditional
         self._pulls = _pulls(windows, part_correction, time_correction, device)
 
     def __call__(self, x: Tensor, step: int) -> Tensor:
         """Return the prediction [C, T, D] for noisy features x [C, T, D]."""
         added = None if self._imagination is None else self._imagination.at(step)
-        predictions = self._of_windows(x, step, added)
         pulls = [pull for pull in self._pulls if added is None or pull.in_time]
+        out = torch.zeros_like(x)
+        if added is None and not pulls:  # no window needs another's prediction
+            for w, c, prediction in self._of_rows(x, step, None):
+                window = self._windows[w]
+                out[c, window.start : window.stop] += self._weights[w] * prediction
+            return out
+        predictions = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
+        for w, c, prediction in self._of_rows(x, step, added):
+            predictions[w][c] = prediction
         drawn = [torch.zeros_like(p) for p in predictions] if pulls else []
         for pull in pulls:
             a, b = (
@@ -109,7 +110,6 @@ class WindowedPrediction:
             )
             drawn[pull.one][:, a] += step_together
             drawn[pull.other][:, b] -= step_together
-        out = torch.zeros_like(x)
         for w, window in enumerate(self._windows):
             prediction = predictions[w] + drawn[w] if pulls else predictions[w]
             out[:, window.start : window.stop] += self._weights[w] * prediction
@@ -117,14 +117,12 @@ class WindowedPrediction:
             self._imagination.learn(step, added, predictions, out)
         return out
 
-    def _of_windows(
+    def _of_rows(
         self, x: Tensor, step: int, added: Sequence[Tensor | None] | None
-    ) -> list[Tensor]:
-        """Return the prediction of each window [C, frames, D]; see `Imagination.at`."""
-        out = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
-        for batch, condition, unconditional in zip(
-            self._batches, self._conditions, self._unconditional, strict=True
-        ):
+    ) -> Iterator[tuple[int, int, Tensor]]:
+        """Yield window, candidate and prediction [frames, D] of each; see `Imagination.at`."""
+        for batch in self._batches:
+            index = torch.tensor([w for w, _ in batch])
             lengths = torch.tensor([len(self._weights[w]) for w, _ in batch], device=x.device)
             noisy = x.new_zeros((len(batch), int(lengths.max()), x.shape[2]))
             for row, (w, c) in zip(noisy, batch, strict=True):
@@ -133,10 +131,15 @@ class WindowedPrediction:
                 own = None if added is None else added[w]
                 if own is not None:
                     row[: len(self._weights[w])] += own[c]
-            prediction = self._predict(noisy, step, lengths, condition, unconditional)
+            prediction = self._predict(
+                noisy,
+                step,
+                lengths,
+                self._conditioning.expand(index),
+                self._unconditional.expand(torch.zeros_like(index)),
+            )
             for row, (w, c) in zip(prediction, batch, strict=True):
-                out[w][c] = row[: len(self._weights[w])]
-        return out
+                yield w, c, row[: len(self._weights[w])]
 
 
 def _pulls(
@@ -155,7 +158,7 @@ def _pulls(
     for window, p in zip(windows, presence, strict=True):
         total[window.start : window.stop] += p
     pulls = []
-    for a, b in combinations(range(len(windows)), 2):
+    for a, b in _meeting(windows):
         one, other = windows[a], windows[b]
         start, stop = max(one.start, other.start), min(one.stop, other.stop)
         in_time = one.parts == other.parts
@@ -168,3 +171,12 @@ def _pulls(
         column = torch.from_numpy(strength[:, None].astype(np.float32)).to(device)
         pulls.append(_Pull(a, b, start, stop, column, in_time))
     return pulls
+
+
+def _meeting(windows: Sequence[Window]) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of windows that share frames, in time linear in their count."""
+    open_windows: list[int] = []
+    for b in sorted(range(len(windows)), key=lambda w: windows[w].start):
+        open_windows = [a for a in open_windows if windows[a].stop > windows[b].start]
+        yield from ((min(a, b), max(a, b)) for a in open_windows)
+        open_windows.append(b)

@@ -38,11 +38,19 @@ def timelines(draw):
 def test_weights_sum_to_one_everywhere_and_windows_fit(timeline):
     texts, frames = timeline
     windows = _compose(texts, frames)
-    np.testing.assert_allclose(_total(windows, frames), 1.0, atol=1e-9)
+    np.testing.assert_allclose(_total(windows, frames), 1.0, atol=1e-6)
     for w in windows:
         assert 0 <= w.start < w.stop <= frames
         assert len(w.weight) <= 64
         assert w.weight.min() >= 0.0
+
+
+def test_windows_hold_no_more_than_their_own_frames():
+    texts = [TimedText(f"text {i}", 50 * i, 50 * i + 50, ("head",)) for i in range(20)]
+    windows = _compose([TimedText("walk", 0, 1000), *texts], 1000)
+    for w in windows:
+        whole = w.weight if w.weight.base is None else w.weight.base
+        assert whole.nbytes <= 4 * STATE.dim * 64
 
 
 def test_one_text_is_one_window_of_full_weight():
