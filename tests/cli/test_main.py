@@ -83,6 +83,24 @@ def test_generate_then_check(tmp_path):
     assert verdict in ("plausible", "marginal", "implausible")
 
 
+def test_a_generated_motion_can_be_edited(tmp_path):
+    quick = ("--steps", 4, "--candidates", 1, "--no-track", "--no-picture")
+    first = _run("generate", "a person walks", "--seconds", 2, *quick, "--out", "a", cwd=tmp_path)
+    assert first.returncode == 0, first.stderr
+    again = _run(
+        *("generate", "a person raises the left arm", "--edit", "a/motion.npz"),
+        *("--regenerate", "left_arm", "--keep-frames", "0-0.5", *quick, "--out", "b"),
+        cwd=tmp_path,
+    )
+    assert again.returncode == 0, again.stderr
+    plan = json.loads((tmp_path / "b" / "plan.json").read_text())
+    assert plan["request"]["edit"] == {
+        "motion": "a/motion.npz",
+        "regenerate": ["left_arm"],
+        "keep": [[0.0, 0.5]],
+    }
+
+
 def test_corpus_build_prints_a_summary(real_clips, tmp_path):
     result = _run(
         *("corpus", "build", "--cmu", real_clips / "cmu"),

@@ -3,6 +3,7 @@ import pytest
 import torch
 
 from motiondiffuse_ros.diffusion.composition import Window
+from motiondiffuse_ros.diffusion.constraints import KeptFeatures
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
@@ -16,7 +17,8 @@ def _conditioning(denoiser, texts):
 
 
 def _sample(denoiser, *, windows=None, frames=40, candidates=2, seed=0, steps=4, **settings):
-    callbacks = {k: settings.pop(k) for k in ("on_step", "cancelled") if k in settings}
+    names = ("on_step", "cancelled", "constraints")
+    callbacks = {k: settings.pop(k) for k in names if k in settings}
     dim = denoiser.config.feature_dim
     windows = windows or [Window("a", 0, np.ones((frames, dim)))]
     every = _conditioning(denoiser, len(windows) + 1)
@@ -96,7 +98,7 @@ def test_bad_guidance_intervals_are_refused(interval):
         SamplerConfig(guidance_interval=interval).validate()
 
 
-def test_a_batch_of_one_is_a_window_over_everything(denoiser):
+def test_one_text_without_constraints_is_plain_sampling(denoiser):
     conditioning = _conditioning(denoiser, 2)
     text, free = (conditioning.expand(torch.tensor([i])) for i in (0, 1))
     config = SamplerConfig(steps=4, precision="fp32")
@@ -104,7 +106,19 @@ def test_a_batch_of_one_is_a_window_over_everything(denoiser):
     batch = sample_batch(denoiser, lengths, text, free, config, seed=0)
     window = [Window("a", 0, np.ones((40, denoiser.config.feature_dim)))]
     alone = sample(denoiser, window, text, free, config, frames=40, candidates=1, seed=0)
-    torch.testing.assert_close(batch, alone, atol=1e-5, rtol=1e-5)
+    assert torch.equal(batch, alone)  # to the bit: there is nothing to compose
+
+
+@pytest.mark.parametrize("scheduler", SCHEDULERS)
+def test_constraints_hold_in_the_result_and_the_seed_still_decides(denoiser, scheduler):
+    mask = torch.zeros(40, denoiser.config.feature_dim)
+    mask[:10] = 1.0
+    kept = KeptFeatures(torch.full_like(mask, 0.25), mask)
+    a, b = (_sample(denoiser, scheduler=scheduler, constraints=[kept]) for _ in range(2))
+    assert torch.equal(a, b)
+    assert (a[:, :10] == 0.25).all()
+    free = _sample(denoiser, scheduler=scheduler)
+    assert not torch.allclose(a[:, 10:], free[:, 10:])  # the rest has taken notice
 
 
 def test_unknown_scheduler_lists_the_known(denoiser):
