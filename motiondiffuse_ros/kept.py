@@ -6,16 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motiondiffuse_ros.diffusion.constraints import Constraint
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.root_path import PathPoint
-from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.robots.time_scaling import come_to_rest
 from motiondiffuse_ros.robots.trajectory_builder import STOP_WINDOW
 from motiondiffuse_ros.waypoint import Waypoint
+
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +32,12 @@ class Kept:
     """
 
     motion: Motion = field(repr=False)
-    rows: Array = field(repr=False)
-    columns: Array = field(repr=False)
+    rows: Flags = field(repr=False)
+    columns: Flags = field(repr=False)
     points: tuple[PathPoint, ...] = ()
 
     @property
-    def mask(self) -> Array:
+    def mask(self) -> Flags:
         """What is kept [T, D], bool."""
         return self.rows[:, None] | self.columns
 

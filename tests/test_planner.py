@@ -161,6 +161,7 @@ def test_a_motion_goes_on_where_another_was_left(planner, plan, seam, late, text
     assert step.max() < 0.25
 
     here = running.at(seam + late)
+    assert here.root is not None
     if late:
         new = planner.restarted(new, here)
     np.testing.assert_allclose(new.motion.root[0, :2], here.root.position[:2], atol=1e-2)

@@ -7,7 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
@@ -23,7 +25,6 @@ from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderE
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
-from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
 
 EASE = 0.6
@@ -134,7 +135,7 @@ class MotionPipeline:
         path = RootPath(points, frames, self.fps)
         return OnPlainFeatures(path, self._checkpoint.statistics)
 
-    def keeping(self, motion: Motion, mask: Array) -> Constraint:
+    def keeping(self, motion: Motion, mask: NDArray[np.bool_]) -> Constraint:
         """Return the constraint that some features are those of a motion.
 
         Args:
@@ -144,7 +145,7 @@ class MotionPipeline:
         mask_values = torch.from_numpy(mask.astype("float32"))
         return KeptFeatures(self._encoded(motion), mask_values.to(self._checkpoint.denoiser.device))
 
-    def easing(self, motion: Motion, rows: Array) -> Constraint:
+    def easing(self, motion: Motion, rows: NDArray[np.bool_]) -> Constraint:
         """Return the constraint that frames next to those of a motion go on from them.
 
         Args:

@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 import torch
@@ -53,7 +55,7 @@ def test_two_half_weights_of_one_text_are_one_window(denoiser):
     mask = torch.ones(1, 5, dtype=torch.bool)
     with torch.inference_mode():
         text = denoiser.condition(states, mask)
-    settings = {"frames": 40, "candidates": 1, "seed": 0}
+    settings: dict[str, Any] = {"frames": 40, "candidates": 1, "seed": 0}
     config = SamplerConfig(steps=3, precision="fp32")
     one = sample(denoiser, [Window("a", 0, np.ones((40, dim)))], text, text, config, **settings)
     two = sample(
