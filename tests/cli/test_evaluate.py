@@ -10,6 +10,7 @@ from small_denoiser import SMALL
 
 from motiondiffuse_ros.cli import evaluate, train_evaluator
 from motiondiffuse_ros.corpus.statistics import Statistics
+from motiondiffuse_ros.corpus.store import pack_clips
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.errors import CheckpointError, InputError
@@ -75,10 +76,13 @@ def test_a_corpus_that_the_weights_have_never_seen_is_measured_whole(
     folders, tmp_path, made_corpus
 ):
     # clips without actions in their names, and none for training
-    clips = tuple(
-        replace(c, name=f"take_{i}", split="test") for i, c in enumerate(made_corpus.split("test"))
+    clips, features = pack_clips(
+        [
+            (f"take_{i}", c.dataset, "test", c.captions, made_corpus.of(c))
+            for i, c in enumerate(made_corpus.split("test"))
+        ]
     )
-    replace(made_corpus, clips=clips, features=_features(made_corpus, clips)).save(tmp_path / "new")
+    replace(made_corpus, clips=clips, features=features).save(tmp_path / "new")
     out = tmp_path / "metrics.json"
     arguments = [*_arguments(folders, out), "--split", "all"]
     arguments[arguments.index("--corpus") + 1] = str(tmp_path / "new")
@@ -87,10 +91,6 @@ def test_a_corpus_that_the_weights_have_never_seen_is_measured_whole(
     assert list(result["rows"]) == ["real", "random", "retrieval", "generated"]
     assert result["clips"] == 40
     assert result["actions"] is None
-
-
-def _features(corpus, clips):
-    return np.concatenate([corpus.of(c) for c in clips])
 
 
 def test_weights_of_another_representation_are_refused(folders, tmp_path, encoder):
