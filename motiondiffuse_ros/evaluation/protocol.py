@@ -96,6 +96,10 @@ def evaluate_texts(
         own = [item.clip for item in items]
         text = evaluator.embed_texts(texts)
         drawn = list(pools(texts, rng))
+        if not drawn:
+            raise InputError(
+                f"no pool of {POOL} different captions could be drawn from the split '{split}'"
+            )
         shown = rng.permutation(len(items))[: protocol.plausible_motions]
         windows = [item.features for item in items]
         # a second window of each clip, and clips that the model has learnt from: how far real

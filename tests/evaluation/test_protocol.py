@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -107,8 +109,6 @@ def test_bad_protocols_are_refused(field, value):
 
 
 def test_a_split_too_small_for_a_pool_is_refused(made_corpus, evaluator):
-    from dataclasses import replace
-
     few = (
         tuple(c for c in made_corpus.clips if c.split != "test")[:80]
         + tuple(c for c in made_corpus.clips if c.split == "test")[:5]
@@ -133,5 +133,12 @@ def test_where_every_clip_is_asked_for_none_is_its_own_answer(made_corpus, evalu
     for clip, answer in zip(clips, answers, strict=True):
         assert len(answer) == clip.frames
         assert not np.array_equal(answer, made_corpus.of(clip))
-    rows = evaluate_texts(made_corpus, "all", evaluator, [nearest], PROTOCOL)
+    unseen = replace(made_corpus, clips=made_corpus.split("test"))
+    rows = evaluate_texts(unseen, "all", evaluator, [nearest], PROTOCOL)
     assert [row.name for row in rows] == ["real", "retrieval"]
+
+
+def test_a_split_without_a_pool_of_different_captions_is_refused(made_corpus, evaluator):
+    # each caption occurs in all three splits
+    with pytest.raises(InputError, match="32 different captions"):
+        evaluate_texts(made_corpus, "all", evaluator, [], PROTOCOL)
