@@ -24,6 +24,7 @@ from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_ba
 from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
+from motiondiffuse_ros.motion.planted_feet import PlantedFeet
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
 
@@ -195,6 +196,7 @@ class MotionPipeline:
             candidates=candidates,
             seed=seed,
             constraints=constraints,
+            planted=self._planted(),
             on_step=on_step,
             cancelled=cancelled,
         )
@@ -231,12 +233,18 @@ class MotionPipeline:
                 every.expand(torch.tensor([len(rows)])),
                 config,
                 seed=seed + start,  # batches must not share their noise
+                planted=self._planted(),
             )
             for i, row in zip(rows, features, strict=True):
                 motions[i] = self._decode(row[: frames[i]])
             if on_progress is not None:
                 on_progress(len(motions), len(texts))
         return [motions[i] for i in range(len(texts))]
+
+    def _planted(self) -> Constraint | None:
+        if not isinstance(self._representation, PoseState):
+            return None
+        return OnPlainFeatures(PlantedFeet(self.fps), self._checkpoint.statistics)
 
     def _condition(self, texts: Sequence[str]) -> Conditioning:
         denoiser = self._checkpoint.denoiser

@@ -18,6 +18,8 @@ from motiondiffuse_ros.diffusion.process import SCHEDULERS, from_clean, make_sch
 from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
+_FRACTIONS = ("part_correction", "time_correction", "apart_above", "planted_below", "eta")
+
 
 @dataclass(frozen=True)
 class SamplerConfig:
@@ -34,6 +36,8 @@ class SamplerConfig:
         time_correction: λ₂ of eq. 11: the same of neighbours in time, where they overlap.
         apart_above: Noise level, as part of the training steps, above which texts on different
             parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
+        planted_below: Noise level, as part of the training steps, below which feet in contact hold
+            the root (`motion.planted_feet`); 0 is never.
         eta: Noise re-injected by DDIM, 0 to 1.
         precision: Arithmetic of the denoiser, one of `PRECISIONS`.
     """
@@ -45,6 +49,7 @@ class SamplerConfig:
     part_correction: float = 0.0
     time_correction: float = 0.0
     apart_above: float = 1.0
+    planted_below: float = 0.0
     eta: float = 0.0
     precision: str = "auto"
 
@@ -57,7 +62,7 @@ class SamplerConfig:
         check_precision(self.precision)
         if not 1 <= self.steps <= 1000:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
-        for name in ("part_correction", "time_correction", "apart_above", "eta"):
+        for name in _FRACTIONS:
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise RequestError(f"{name} must be from 0 to 1, got {getattr(self, name)}")
         low, high = self.guidance_interval
@@ -84,6 +89,7 @@ def sample(
     candidates: int,
     seed: int,
     constraints: Sequence[Constraint] = (),
+    planted: Constraint | None = None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
@@ -99,6 +105,7 @@ def sample(
         candidates: Independent samples.
         seed: Of all noise.
         constraints: What the motion must keep to, met at every step and in the result.
+        planted: What is imposed below `planted_below`, before the constraints.
         on_step: Called with (steps done, steps in all).
         cancelled: Asked before each step.
 
@@ -123,7 +130,9 @@ def sample(
         device=denoiser.device,
         imagination=_imagination(denoiser, windows, config),
     )
-    return _denoise(predict, x, denoiser, config, generator, constraints, on_step, cancelled)
+    return _denoise(
+        predict, x, denoiser, config, generator, constraints, planted, on_step, cancelled
+    )
 
 
 @torch.inference_mode()
@@ -135,6 +144,7 @@ def sample_batch(
     config: SamplerConfig,
     *,
     seed: int,
+    planted: Constraint | None = None,
 ) -> Tensor:
     """Sample one motion for each of many texts: without composition, of any lengths.
 
@@ -145,6 +155,7 @@ def sample_batch(
         unconditional: One row, of the empty text.
         config: Scheduler and guidance.
         seed: Of all noise.
+        planted: What is imposed below `planted_below`.
 
     Returns:
         Normalised features [B, T, D] float32; the first `lengths` frames of each count.
@@ -162,7 +173,7 @@ def sample_batch(
     def predict(x: Tensor, step: int) -> Tensor:
         return _guided(denoiser, config, x, step, lengths, conditioning, free)
 
-    return _denoise(predict, x, denoiser, config, generator, ())
+    return _denoise(predict, x, denoiser, config, generator, (), planted)
 
 
 def _denoise(
@@ -172,9 +183,11 @@ def _denoise(
     config: SamplerConfig,
     generator: torch.Generator,
     constraints: Sequence[Constraint],
+    planted: Constraint | None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
+    late = constraints if planted is None else (planted, *constraints)
     scheduler = make_scheduler(config.scheduler, denoiser.config)
     scheduler.set_timesteps(config.steps)
     x = x.to(denoiser.device)  # drawn on the CPU: a seed means the same on every device
@@ -184,15 +197,16 @@ def _denoise(
         if cancelled is not None and cancelled():
             raise Cancelled("canceled while sampling")
         output = predict(x, int(step))
-        if constraints:
+        imposed = late if step < config.planted_below * denoiser.config.train_steps else constraints
+        if imposed:
             alpha = scheduler.alphas_cumprod[int(step)].to(x)
             kind = denoiser.config.prediction_type
-            clean = apply(constraints, to_clean(kind, output, x, alpha))
+            clean = apply(imposed, to_clean(kind, output, x, alpha))
             output = from_clean(kind, clean, x, alpha)
         x = scheduler.step(output, step, x, generator=generator, **extra).prev_sample  # type: ignore[arg-type, union-attr]
         if on_step is not None:
             on_step(done + 1, total)
-    x = apply(constraints, x)
+    x = apply(late if config.planted_below > 0.0 else constraints, x)
     if not torch.isfinite(x).all():
         raise SamplingError(
             f"sampling gave values that are not finite (seed {generator.initial_seed()}, scheduler "

@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+import torch
+from synthetic import moved, standing
+
+from motiondiffuse_ros.corpus.importer import load_motion
+from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.motion.planted_feet import PlantedFeet
+
+STATE = PoseState()
+PLANAR = STATE.groups()["root_velocity"]
+
+
+def _planted(features):
+    return PlantedFeet(20.0)(torch.from_numpy(features).float()[None])[0].numpy()
+
+
+def _clip(paths, name):
+    path = next(p for p in paths if p.stem == name)
+    return STATE.encode(load_motion(path).resample(20.0))
+
+
+@pytest.mark.parametrize("name", ["02_01", "dataset-2_wave-right-hand_normal_001"])
+def test_a_root_that_drifts_over_standing_feet_is_held(real_paths, name):
+    features = _clip(real_paths, name)
+    drifting = features.copy()
+    drifting[:, PLANAR] += [0.3, 0.0]
+    held = _planted(drifting)[:, PLANAR] - features[:, PLANAR]
+    assert np.abs(held[:, 0]).mean() < 0.12
+
+
+def test_feet_in_the_air_hold_nothing():
+    still = standing(40)
+    flying = STATE.encode(moved(still, np.tile([0.0, 0.0, 0.5], (40, 1))))
+    flying[:, PLANAR] += [0.3, 0.2]
+    np.testing.assert_allclose(_planted(flying), flying, atol=1e-6)
+
+
+def test_poses_stay_and_velocities_follow_the_root(real_paths):
+    features = _clip(real_paths, "02_01")
+    features[:, PLANAR] += [0.1, 0.2]
+    planted, groups = _planted(features), STATE.groups()
+    for name in ("yaw_velocity", "root_height", "positions", "rotations", "contacts"):
+        np.testing.assert_array_equal(planted[:, groups[name]], features[:, groups[name]])
+    change = planted[:, PLANAR] - features[:, PLANAR]
+    joints = (planted - features)[:, groups["velocities"]].reshape(len(features), -1, 3)
+    np.testing.assert_allclose(
+        joints[:, :, [0, 2]], np.tile(change[:, None], (1, 22, 1)), atol=1e-5
+    )
+    np.testing.assert_allclose(joints[:, :, 1], 0.0, atol=1e-6)
+
+
+def test_a_single_frame_is_left_alone():
+    features = STATE.encode(standing(1))
+    np.testing.assert_array_equal(_planted(features), features.astype(np.float32))
