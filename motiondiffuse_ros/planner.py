@@ -63,6 +63,10 @@ class PlannerConfig:
         scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
         steps: Denoising steps.
         guidance_scale: Classifier-free guidance.
+        part_correction: λ₁ of eq. 10; see `SamplerConfig`.
+        time_correction: λ₂ of eq. 11.
+        apart_above: Noise level above which texts on different parts are denoised apart.
+        planted_below: Noise level below which feet in contact hold the root.
         candidates: Motions to choose from, by match with the texts and by plausibility.
         control_rate: Rate of the trajectory, Hz.
         track: Whether the chosen motion is also judged by simulated tracking.
@@ -71,9 +75,13 @@ class PlannerConfig:
 
     weights: Path | None = None
     text_encoder: Path | None = None
-    scheduler: str = "ddim"
-    steps: int = 30
-    guidance_scale: float = 2.5
+    scheduler: str = SamplerConfig.scheduler
+    steps: int = SamplerConfig.steps
+    guidance_scale: float = SamplerConfig.guidance_scale
+    part_correction: float = SamplerConfig.part_correction
+    time_correction: float = SamplerConfig.time_correction
+    apart_above: float = SamplerConfig.apart_above
+    planted_below: float = SamplerConfig.planted_below
     candidates: int = 4
     control_rate: float = 50.0
     track: bool = True
@@ -81,13 +89,25 @@ class PlannerConfig:
 
     def validate(self) -> None:
         """Raise RequestError if a value is out of range."""
-        SamplerConfig(self.scheduler, self.steps, self.guidance_scale).validate()
+        self.sampler(self.steps, self.guidance_scale).validate()
         if not 1 <= self.candidates <= LIMITS.max_candidates:
             raise RequestError(
                 f"candidates must be from 1 to {LIMITS.max_candidates}, got {self.candidates}"
             )
         if not 1.0 <= self.control_rate <= 1000.0:
             raise RequestError(f"control_rate must be from 1 to 1000 Hz, got {self.control_rate}")
+
+    def sampler(self, steps: int, guidance_scale: float) -> SamplerConfig:
+        """Return the sampler of a request's steps and guidance scale."""
+        return SamplerConfig(
+            scheduler=self.scheduler,
+            steps=steps,
+            guidance_scale=guidance_scale,
+            part_correction=self.part_correction,
+            time_correction=self.time_correction,
+            apart_above=self.apart_above,
+            planted_below=self.planted_below,
+        )
 
 
 @dataclass(frozen=True)
@@ -300,7 +320,7 @@ class Planner:
         samples = pipeline(
             tuple(_later(text, before) for text in texts),
             before + frames,
-            config=SamplerConfig(self.config.scheduler, request.steps, request.guidance_scale),
+            config=self.config.sampler(request.steps, request.guidance_scale),
             candidates=request.candidates,
             seed=request.seed,
             blend_frames=round(LIMITS.blend * pipeline.fps),

@@ -44,12 +44,12 @@ class SamplerConfig:
 
     scheduler: str = "ddim"
     steps: int = 30
-    guidance_scale: float = 2.5
+    guidance_scale: float = 2.0
     guidance_interval: tuple[float, float] = (0.0, 1.0)
     part_correction: float = 0.0
-    time_correction: float = 0.0
-    apart_above: float = 1.0
-    planted_below: float = 0.0
+    time_correction: float = 0.5
+    apart_above: float = 0.25
+    planted_below: float = 0.3
     eta: float = 0.0
     precision: str = "auto"
 

@@ -30,6 +30,30 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "scheduler": ParameterSpec(
         _DEFAULT.scheduler, "sampler of the diffusion", choices=SCHEDULERS, at_configure=True
     ),
+    "part_correction": ParameterSpec(
+        _DEFAULT.part_correction,
+        "how far texts on different parts are drawn together [1]",
+        (0.0, 1.0),
+        at_configure=True,
+    ),
+    "time_correction": ParameterSpec(
+        _DEFAULT.time_correction,
+        "how far neighbours in time are drawn together [1]",
+        (0.0, 1.0),
+        at_configure=True,
+    ),
+    "apart_above": ParameterSpec(
+        _DEFAULT.apart_above,
+        "noise level [1] above which texts on different parts are denoised apart; 1 = never",
+        (0.0, 1.0),
+        at_configure=True,
+    ),
+    "planted_below": ParameterSpec(
+        _DEFAULT.planted_below,
+        "noise level [1] below which feet in contact hold the root; 0 = never",
+        (0.0, 1.0),
+        at_configure=True,
+    ),
     "control_rate": ParameterSpec(
         _DEFAULT.control_rate,
         "of trajectories and ~/reference [Hz]",
@@ -81,6 +105,10 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         scheduler=parameters["scheduler"],
         steps=parameters["steps"],
         guidance_scale=parameters["guidance_scale"],
+        part_correction=parameters["part_correction"],
+        time_correction=parameters["time_correction"],
+        apart_above=parameters["apart_above"],
+        planted_below=parameters["planted_below"],
         candidates=parameters["candidates"],
         control_rate=parameters["control_rate"],
         device=parameters["device"],
