@@ -3,7 +3,8 @@
     python -m benchmarks.weights_card --run runs/base --out motiondiffuse_ros/weights/base
 
 Writes the checkpoint's files, training.json (settings, steps, minutes, last losses) and
-curves.png. The model card and licence beside them are written by hand.
+curves.png. A run that started from the weights that are there counts on from theirs. The model card
+and licence beside them are written by hand.
 """
 
 from __future__ import annotations
@@ -39,17 +40,20 @@ def main() -> None:
     checkpoint = options.run / "checkpoint"
     sha256 = Checkpoint.from_pretrained(checkpoint).sha256
     options.out.mkdir(parents=True, exist_ok=True)
-    for path in checkpoint.iterdir():
-        shutil.copyfile(path, options.out / path.name)
+    settings = json.loads((options.run / "config.json").read_text())
+    earlier = _earlier(options.out, settings["started_from"])
+    shutil.copytree(checkpoint, options.out, dirs_exist_ok=True)
     rows = [json.loads(line) for line in (options.run / "log.jsonl").read_text().splitlines()]
     training = [row for row in rows if "plain" in row]
     validation = [row for row in rows if "validation" in row]
-    settings = json.loads((options.run / "config.json").read_text())
-    summary = {
-        **settings,
+    own = {
         "steps": rows[-1]["step"],
         "minutes": rows[-1]["minutes"],
         "windows": rows[-1]["step"] * settings["training"]["batch_size"],
+    }
+    summary = {
+        **settings,
+        **{name: count + earlier.get(name, 0) for name, count in own.items()},
         "training_loss_plain": float(np.mean([row["plain"] for row in training[-20:]])),
         "validation_loss_plain": validation[-1]["validation"],
         "model_sha256": sha256,
@@ -57,6 +61,13 @@ def main() -> None:
     (options.out / "training.json").write_text(json.dumps(summary, indent=2) + "\n")
     _draw(training, validation, options.out / "curves.png")
     print(json.dumps({k: v for k, v in summary.items() if k not in ("training", "denoiser")}))
+
+
+def _earlier(out: Path, started_from: str | None) -> dict:
+    """Return the training.json of the weights that a run started from, if they are in `out`."""
+    card = out / "training.json"
+    there = json.loads(card.read_text()) if started_from and card.exists() else {}
+    return there if there.get("model_sha256") == started_from else {}
 
 
 def _draw(training: list[dict], validation: list[dict], path: Path) -> None:

@@ -85,6 +85,7 @@ class Trainer:
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)
+        self._started_from = "" if start is None else start.sha256
         if start is not None:
             self._start_from(start)
         self._optimizer = torch.optim.AdamW(
@@ -195,6 +196,7 @@ class Trainer:
             "denoiser": self._denoiser.state_dict(),
             "optimizer": self._optimizer.state_dict(),
             "ema": self._ema.state_dict(),
+            "started_from": self._started_from,
             "step": self._step,
             "seconds": self._seconds,
         }
@@ -286,6 +288,7 @@ class Trainer:
         self._optimizer.load_state_dict(state["optimizer"])
         self._ema.load_state_dict(state["ema"])
         self._step, self._seconds = state["step"], state["seconds"]
+        self._started_from = state.get("started_from", "")
         torch.manual_seed(self._config.seed + self._step)
 
     def _record_settings(self) -> None:
@@ -293,6 +296,7 @@ class Trainer:
             "training": self._config.to_dict(),
             "denoiser": self._denoiser.config.to_dict(),
             "parameters": sum(p.numel() for p in self._denoiser.parameters()),
+            "started_from": self._started_from or None,
             "train_clips": len(self._corpus.split("train")),
         }
         (self._out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")

@@ -57,6 +57,24 @@ def test_a_run_leaves_a_checkpoint_a_log_and_can_be_resumed(corpus, encoder, tmp
     assert again[0].minutes > seen[-1].minutes
 
 
+def test_a_run_from_given_weights_begins_with_them_and_says_so(corpus, encoder, tmp_path):
+    Trainer(corpus, encoder, SMALL, CONFIG, tmp_path / "one").run()
+    weights = Checkpoint.from_pretrained(tmp_path / "one" / "checkpoint")
+    other = Trainer(corpus, encoder, SMALL, CONFIG, tmp_path / "other", start=weights)
+    other.save()
+    again = Checkpoint.from_pretrained(tmp_path / "other" / "checkpoint")
+    for name, tensor in weights.denoiser.state_dict().items():
+        assert tensor.equal(again.denoiser.state_dict()[name]), name
+
+    Trainer(corpus, encoder, SMALL, CONFIG, tmp_path / "other", resume=True)
+    settings = json.loads((tmp_path / "other" / "config.json").read_text())
+    assert settings["started_from"] == weights.sha256
+
+    wider = replace(SMALL, width=2 * SMALL.width)
+    with pytest.raises(CheckpointError, match="differ from this denoiser in width"):
+        Trainer(corpus, encoder, wider, CONFIG, tmp_path / "wider", start=weights)
+
+
 def test_resuming_nothing_or_something_broken_is_refused(corpus, encoder, tmp_path):
     with pytest.raises(CheckpointError, match="nothing to resume"):
         Trainer(corpus, encoder, SMALL, CONFIG, tmp_path, resume=True)
