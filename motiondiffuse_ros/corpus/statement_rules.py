@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
 from motiondiffuse_ros.corpus.travel import Travel
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
@@ -31,6 +32,7 @@ _SUNK, _DOWN, _REACHING = 0.12, 0.3, 0.45  # m
 _SPREAD = 1.1  # m between the wrists
 _LEG_UP, _FOOT_DOWN = 0.35, 0.15  # m, toe over the floor
 _QUICK, _CALM = 2.2, 1.0  # m/s, against the body
+_SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
 _STEPS = 4
@@ -229,10 +231,19 @@ def _hands(body: _Body, fps: float) -> list[Finding]:
     down = {side: (wrists[side] < shoulders[side]).all() for side in wrists}
     fastest = {side: body.speed(f"{side}_wrist", fps).max(initial=0.0) for side in wrists}
     found = []
-    if (up["left"] & up["right"]).mean() > _HELD:
+    swings = {
+        side: _swings(body.place(f"{side}_wrist"), wrists[side] > shoulders[side])
+        for side in wrists
+    }
+    held = max(swings.values()) < 2
+    if min(swings.values()) >= _WAVES:
+        found.append(Finding("both hands wave"))
+    elif (up["left"] & up["right"]).mean() > _HELD and held:
         found.append(Finding("both hands up"))
     for side, own, other in ((1, "left", "right"), (-1, "right", "left")):
-        if up[own].mean() > _HELD and down[other]:
+        if swings[own] >= _WAVES and down[other]:
+            found.append(Finding("one hand waves", side))
+        elif up[own].mean() > _HELD and down[other] and held:
             found.append(Finding("one hand up", side))
         if fastest[own] > _QUICK and fastest[other] < _CALM:
             found.append(Finding("one arm fast", side))
@@ -241,3 +252,16 @@ def _hands(body: _Body, fps: float) -> list[Finding]:
     if ((apart > _SPREAD) & level).mean() > _HELD:
         found.append(Finding("arms out"))
     return found
+
+
+def _swings(wrist: Array, raised: NDArray[np.bool_]) -> int:
+    """Return how often a wrist [T, 3] turns back, to the side or ahead, while it is raised [T]."""
+    frames = np.flatnonzero(raised)
+    if not len(frames):
+        return 0
+    path = wrist[frames[0] : frames[-1] + 1]
+    turns = [
+        sum(len(find_peaks(sign * path[:, axis], prominence=_SWING)[0]) for sign in (1, -1))
+        for axis in (0, 2)
+    ]
+    return max(turns)

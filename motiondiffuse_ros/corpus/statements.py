@@ -39,6 +39,10 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person holds the left hand above the head",
         "a person raises the left hand above the head",
     ),
+    "one hand waves": (
+        "a person raises the left hand and waves with it",
+        "a person waves the left hand from side to side",
+    ),
     "one arm fast": (
         "a person moves the left arm fast and keeps the right arm calm",
         "a person makes a quick movement with the left hand",
@@ -64,6 +68,10 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person holds both hands above the head",
         "a person raises both hands above the head",
     ),
+    "both hands wave": (
+        "a person raises both hands and waves with them",
+        "a person waves both hands from side to side",
+    ),
     "arms out": (
         "a person holds both arms out sideways at shoulder height",
         "a person spreads the arms wide",
@@ -88,7 +96,7 @@ _NUMBERS = ("one", "two", "three", "four", "five", "six", "seven", "eight")
 
 OPPOSED = (
     *("sideways", "turn", "curve", "run in a curve", "one hand up", "walk", "slow walk", "run"),
-    *("back", "both hands up", "bow", "still"),
+    *("back", "both hands up", "bow", "still", "one hand waves", "both hands wave"),
 )
 """Kinds of which a motion can be only one: what a text does not say if it says another."""
 

@@ -27,7 +27,7 @@ def _of(paths, name):
         ("09_01", "run", "runs"),
         ("dataset-2_run_normal_001", "run", "runs"),
         ("dataset-2_raise-up-left-hand_normal_001", "one hand up", "left"),
-        ("dataset-2_wave-right-hand_normal_001", "one hand up", "right"),
+        ("dataset-2_wave-right-hand_normal_001", "one hand waves", "right"),
         ("dataset-2_walk-turn-right_normal_001", "curve", "right"),
         ("dataset-1_bow_active_001", "bow", "forward"),
     ],
