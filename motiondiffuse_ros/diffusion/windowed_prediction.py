@@ -99,20 +99,16 @@ class WindowedPrediction:
         predictions = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
         for w, c, prediction in self._of_rows(x, step, added):
             predictions[w][c] = prediction
-        drawn = [torch.zeros_like(p) for p in predictions] if pulls else []
+        for w, window in enumerate(self._windows):
+            out[:, window.start : window.stop] += self._weights[w] * predictions[w]
         for pull in pulls:
             a, b = (
                 slice(pull.start - self._windows[w].start, pull.stop - self._windows[w].start)
                 for w in (pull.one, pull.other)
             )
-            step_together = pull.strength * (
-                predictions[pull.other][:, b] - predictions[pull.one][:, a]
-            )
-            drawn[pull.one][:, a] += step_together
-            drawn[pull.other][:, b] -= step_together
-        for w, window in enumerate(self._windows):
-            prediction = predictions[w] + drawn[w] if pulls else predictions[w]
-            out[:, window.start : window.stop] += self._weights[w] * prediction
+            apart = predictions[pull.other][:, b] - predictions[pull.one][:, a]
+            lead = self._weights[pull.one][a] - self._weights[pull.other][b]
+            out[:, pull.start : pull.stop] += lead * (pull.strength * apart)
         if self._imagination is not None and added is not None:
             self._imagination.learn(step, added, predictions, out)
         return out
