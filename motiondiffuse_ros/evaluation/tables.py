@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.table import Table
@@ -37,6 +37,14 @@ def rows_to_json(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float] | 
     """Return rows by name as JSON types; a metric that does not apply to a row is null."""
     names = _metrics(rows)
     return {row.name: {n: _to_json(row.metrics.get(n)) for n in names} for row in rows}
+
+
+def rows_from_json(data: Mapping[str, Mapping[str, Mapping[str, float] | None]]) -> list[Row]:
+    """Undo `rows_to_json`."""
+    return [
+        Row(name, {n: Estimate(v["mean"], v["ci95"]) for n, v in metrics.items() if v is not None})
+        for name, metrics in data.items()
+    ]
 
 
 def metrics_cells(rows: Sequence[Row]) -> list[list[str]]:

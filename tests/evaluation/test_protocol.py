@@ -12,6 +12,7 @@ from motiondiffuse_ros.evaluation.tables import (
     markdown_table,
     metrics_cells,
     plausibility_cells,
+    rows_from_json,
     rows_to_json,
 )
 
@@ -98,6 +99,7 @@ def test_tables_have_a_line_for_every_row(rows):
     text = markdown_table(cells)
     assert text.count("\n") == len(rows) + 2
     assert plausibility_cells(list(rows.values()))[0][1] == "phys-err mm"
+    assert metrics_cells(rows_from_json(rows_to_json(list(rows.values())))) == cells
 
 
 @pytest.mark.parametrize(
