@@ -1,33 +1,57 @@
-"""Robots by name."""
+"""Robots by name, or by the path of a description."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 from motiondiffuse_ros.errors import RobotError
+from motiondiffuse_ros.robots.description_file import DescriptionFile, shipped_descriptions
 from motiondiffuse_ros.robots.humanoid import describe_humanoid
-from motiondiffuse_ros.robots.robot import Robot, RobotDescription, load_robot
+from motiondiffuse_ros.robots.robot import Robot, load_robot
 
-_DESCRIPTIONS: dict[str, Callable[[], RobotDescription]] = {"humanoid": describe_humanoid}
+HUMANOID = "humanoid"
 
 
 def available_robots() -> tuple[str, ...]:
     """Return the names that `get_robot` takes."""
-    return tuple(sorted(_DESCRIPTIONS))
+    return tuple(sorted((HUMANOID, *shipped_descriptions())))
+
+
+def robot_refusal(name: str) -> str:
+    """Return why a robot cannot be had, without loading it; empty if nothing speaks against it."""
+    if name in available_robots():
+        return ""
+    if not _is_path(name):
+        known = ", ".join(available_robots())
+        return f"unknown robot '{name}'; the robots are {known}, or the path of a YAML description"
+    if not Path(name).expanduser().is_file():
+        return f"no robot description at {name}; it is a YAML file as docs/robots.md shows"
+    return ""
 
 
 def get_robot(name: str) -> Robot:
     """Return a robot; loaded once a process.
 
+    Args:
+        name: One of `available_robots()`, or the path of a description (.yaml or .yml).
+
     Raises:
-        RobotError: If there is none of that name.
+        RobotError: If there is none of that name, its description is wrong, or its model is not
+            on this machine.
     """
-    if name not in _DESCRIPTIONS:
-        raise RobotError(f"unknown robot '{name}'; the robots are {', '.join(available_robots())}")
-    return _load(name)
+    if refusal := robot_refusal(name):
+        raise RobotError(refusal)
+    return _load(str(Path(name).expanduser().resolve()) if _is_path(name) else name)
 
 
 @cache
 def _load(name: str) -> Robot:
-    return load_robot(_DESCRIPTIONS[name]())
+    if name == HUMANOID:
+        return load_robot(describe_humanoid())
+    path = Path(name) if _is_path(name) else shipped_descriptions()[name]
+    return load_robot(DescriptionFile.read(path).describe())
+
+
+def _is_path(name: str) -> bool:
+    return name.endswith((".yaml", ".yml"))

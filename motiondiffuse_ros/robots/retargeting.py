@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from motiondiffuse_ros.errors import RobotError
@@ -9,6 +10,9 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.state import hinges_from_motion
+from motiondiffuse_ros.robots.embodiment import embodiment
+from motiondiffuse_ros.robots.foot_paths import foot_paths
+from motiondiffuse_ros.robots.inverse_kinematics import InverseKinematics
 from motiondiffuse_ros.robots.robot import Robot
 
 
@@ -29,18 +33,46 @@ class RobotMotion:
     fps: float
 
 
-def retarget(robot: Robot, motion: Motion) -> RobotMotion:
-    """Carry a motion over to a robot, frame by frame.
+def retarget(
+    robot: Robot,
+    motion: Motion,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> RobotMotion:
+    """Carry a motion over to a robot.
+
+    The humanoid takes it joint by joint. Other robots get the path scaled by the length of their
+    legs, feet that stand where they stand, trunk and limbs in the directions of the skeleton's,
+    as far as their limits and bodies allow; see docs/robots.md.
+
+    Args:
+        robot: Who moves.
+        motion: Finite, at any rate.
+        progress: Told the share done, 0 to 1.
+        cancelled: Asked before every frame that takes work.
 
     Raises:
         RobotError: If this version cannot retarget to such a robot.
+        Cancelled: If `cancelled` says so.
     """
-    if robot.description.retargeting != "exact":
-        kind = robot.description.retargeting
-        raise RobotError(f"robot '{robot.name}': unknown retargeting '{kind}'; known are exact")
-    return RobotMotion(
-        motion.root, rot.continuous(motion.rotations[:, 0]), hinges_from_motion(motion), motion.fps
-    )
+    kind = robot.description.retargeting
+    if kind == "exact":
+        return RobotMotion(
+            motion.root,
+            rot.continuous(motion.rotations[:, 0]),
+            hinges_from_motion(motion),
+            motion.fps,
+        )
+    if kind != "ik":
+        raise RobotError(f"robot '{robot.name}': unknown retargeting '{kind}'; known: exact, ik")
+    feet = foot_paths(motion, embodiment(robot))
+    qpos = InverseKinematics(robot).follow(motion, feet, progress, cancelled)
+    return RobotMotion(qpos[:, :3], rot.continuous(qpos[:, 3:7]), qpos[:, 7:], motion.fps)
+
+
+def path_scale(robot: Robot) -> float:
+    """Return the length of a robot's way over that of the motion's."""
+    return 1.0 if robot.description.retargeting == "exact" else embodiment(robot).scale
 
 
 def to_joint_positions(robot: Robot, motion: Motion) -> Array:

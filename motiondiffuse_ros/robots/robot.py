@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 
 import mujoco
 import numpy as np
@@ -20,12 +21,14 @@ class RobotDescription:
 
     Attributes:
         name: What requests call it.
-        model: Compiles the model; its first joint is the free joint of the floating base, and
-            positions and torques are limited there (joint `range`, actuator `forcerange`).
+        model: Returns the model; its first joint is the free joint of the floating base, and
+            positions and torques are limited there (joint `range`; actuator `forcerange`, joint
+            `actuatorfrcrange` or a motor's `ctrlrange`).
         speed_limits: Largest joint speeds, rad/s, by joint name.
         rest: Joint positions of an upright stance, rad, by joint name; others are 0.
-        body_map: Which body follows which canonical joint.
-        retargeting: "exact" where the joints are the canonical skeleton's own.
+        body_map: Which body or, for "ik", site follows which canonical joint.
+        retargeting: "exact" where the joints are the canonical skeleton's own, else "ik".
+        t_pose: Joint positions of the canonical T-pose, rad, by joint name; others are 0. For "ik".
     """
 
     name: str
@@ -34,6 +37,7 @@ class RobotDescription:
     rest: Mapping[str, float] = field(repr=False)
     body_map: Mapping[str, str] = field(repr=False)
     retargeting: str = "exact"
+    t_pose: Mapping[str, float] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,9 +108,46 @@ def load_robot(description: RobotDescription) -> Robot:
     )
 
 
+def standing_on_floor(model: mujoco.MjModel, joints: Array) -> None:
+    """Raise or lower a model's initial floating base so that its lowest solid is at z = 0.
+
+    Args:
+        model: With a free joint first.
+        joints: Positions of the other joints [J], rad.
+    """
+    data = mujoco.MjData(model)
+    data.qpos[7:] = joints
+    mujoco.mj_kinematics(model, data)
+    lowest = min(
+        float((points @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom])[:, 2].min())
+        for geom in range(model.ngeom)
+        if (points := solid_points(model, geom)) is not None
+    )
+    model.qpos0[2] -= lowest
+
+
+def solid_points(model: mujoco.MjModel, geom: int) -> Array | None:
+    """Return points that span a geom that collides [P, 3], in its frame, m; None for others."""
+    body = int(model.geom_bodyid[geom])
+    if body == 0 or not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
+        return None
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+        mesh = int(model.geom_dataid[geom])
+        first = int(model.mesh_vertadr[mesh])
+        return model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(float)
+    centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    return centre + half * np.array(list(product((-1.0, 1.0), repeat=3)))
+
+
 def _torque_limits(model: mujoco.MjModel) -> Array:
     limits = np.full(model.njnt, np.inf)
+    own, none = model.jnt_actfrclimited.astype(bool), mujoco.mjtBias.mjBIAS_NONE
+    limits[own] = model.jnt_actfrcrange[own, 1]
     for a in range(model.nu):
+        joint = model.actuator_trnid[a, 0]
         if model.actuator_forcelimited[a]:
-            limits[model.actuator_trnid[a, 0]] = model.actuator_forcerange[a, 1]
+            limits[joint] = min(limits[joint], model.actuator_forcerange[a, 1])
+        elif model.actuator_biastype[a] == none and model.actuator_ctrllimited[a]:
+            gain = model.actuator_gainprm[a, 0] * model.actuator_gear[a, 0]
+            limits[joint] = min(limits[joint], gain * model.actuator_ctrlrange[a, 1])
     return limits[1:]

@@ -7,7 +7,21 @@ from pathlib import Path
 
 import numpy as np
 
+from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """What a trajectory was made from.
+
+    Attributes:
+        motion: Of the skeleton.
+        times: Time in the motion at each point [N], s; its first frame before the motion begins.
+    """
+
+    motion: Motion = field(repr=False)
+    times: Array = field(repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +38,9 @@ class JointTrajectory:
         root_linear_velocity: In the world frame [N, 3], m/s; the last exactly zero.
         root_angular_velocity: In the world frame [N, 3], rad/s; the last exactly zero.
         notes: What had to be changed to keep limits, in words.
+        accelerations: [N, J], rad/s^2, central differences of the velocities; None where nobody
+            asked for them.
+        source: What it was made from; None where that is not known.
     """
 
     joint_names: tuple[str, ...] = field(repr=False)
@@ -35,6 +52,8 @@ class JointTrajectory:
     root_linear_velocity: Array = field(repr=False)
     root_angular_velocity: Array = field(repr=False)
     notes: tuple[str, ...] = ()
+    accelerations: Array | None = field(default=None, repr=False)
+    source: Source | None = field(default=None, repr=False)
 
     @property
     def duration(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from motiondiffuse_ros.robots.retargeting import RobotMotion, retarget
 from motiondiffuse_ros.robots.robot import Robot
 from motiondiffuse_ros.robots.start_state import StartState
 from motiondiffuse_ros.robots.time_scaling import come_to_rest, slow_down
-from motiondiffuse_ros.robots.trajectory import JointTrajectory
+from motiondiffuse_ros.robots.trajectory import JointTrajectory, Source
 
 STOP_WINDOW = 0.5
 """The trajectory slows to rest over its last half second."""
@@ -31,7 +32,14 @@ _SPEED_MARGIN = 0.99
 
 
 def build_trajectory(
-    robot: Robot, motion: Motion, rate: float = 50.0, start: StartState | None = None
+    robot: Robot,
+    motion: Motion,
+    rate: float = 50.0,
+    start: StartState | None = None,
+    *,
+    accelerations: bool = False,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
 ) -> JointTrajectory:
     """Sample a motion for a robot's controller.
 
@@ -50,8 +58,12 @@ def build_trajectory(
         motion: Finite; one frame yields a trajectory that holds it.
         rate: Points a second.
         start: Where the robot is when the trajectory begins; None = at the motion's first frame.
+        accelerations: Whether to give them too.
+        progress: Told the share of the retargeting done, 0 to 1.
+        cancelled: Asked while retargeting takes work.
 
     Raises:
+        Cancelled: If `cancelled` says so.
         RobotError: If the rate is not positive, the motion or the start state not finite or of
             another robot, or the robot cannot take such motions.
     """
@@ -59,7 +71,7 @@ def build_trajectory(
         raise RobotError(f"a trajectory needs a positive rate in Hz, got {rate}")
     if not (np.isfinite(motion.root).all() and np.isfinite(motion.rotations).all()):
         raise RobotError("the motion holds values that are not finite; nothing can follow it")
-    frames = retarget(robot, motion)
+    frames = retarget(robot, motion, progress, cancelled)
     joints, notes = _inside_limits(robot, frames.joints)
     if motion.frames == 1:
         frames = RobotMotion(*(np.repeat(a, 2, axis=0) for a in _arrays(frames)), fps=rate)
@@ -79,6 +91,7 @@ def build_trajectory(
         paths = join(paths, start, _SPEED_MARGIN * robot.velocity_limits, STOP_WINDOW)
         notes += said + _joining_notes(paths)
     path, end = paths.joints, paths.end
+    approach = paths.approach if isinstance(paths, JoinedPaths) else 0.0
     schedule, slowed_end = slow_down(path, end, _SPEED_MARGIN * robot.velocity_limits)
     if slowed_end - end > 1e-6:
         fast = np.max(np.abs(path(np.linspace(0, end, 10 * len(knots)), 1)), axis=0)
@@ -103,16 +116,19 @@ def build_trajectory(
         positions[0], speeds[0] = start.positions, start.velocities
         if start.root is not None:
             linear[0], angular[0] = start.root.linear_velocity, start.root.angular_velocity
+    speeds = _to_rest(speeds)
     return JointTrajectory(
         joint_names=robot.joint_names,
         times=times,
         positions=positions,
-        velocities=_to_rest(speeds),
+        velocities=speeds,
         root_position=root_position,
         root_orientation=orientation,
         root_linear_velocity=_to_rest(linear),
         root_angular_velocity=_to_rest(angular),
         notes=tuple(notes),
+        accelerations=_differences(speeds, rate) if accelerations else None,
+        source=Source(motion, np.clip(path_times - approach, 0.0, motion.duration)),
     )
 
 

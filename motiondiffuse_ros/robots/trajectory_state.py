@@ -1,4 +1,8 @@
-"""What a trajectory asks of a robot at any time, and the motion that it has made of it so far."""
+"""What a trajectory asks of a robot at any time, and what the body has done so far.
+
+The joints of the humanoid are read back as a motion. Those of other robots cannot be: for them it
+is the motion that the trajectory was made from.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from motiondiffuse_ros.errors import RobotError
 from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion.resample import sample_at
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.state import qpos_to_motion
 from motiondiffuse_ros.robots.robot import Robot
@@ -70,13 +75,20 @@ class TrajectoryState:
             fps: Frame rate of the result, Hz.
 
         Raises:
-            RobotError: If the robot's joints are not the skeleton's own.
+            RobotError: If the robot's joints are not the skeleton's own, and the trajectory does
+                not know what it was made from.
         """
-        if robot.description.retargeting != "exact":
-            raise RobotError(f"robot '{robot.name}': its joints cannot be read back as a motion")
         frames = int(np.floor(min(time, seconds) * fps + 1e-6)) + 1
         times = time - np.arange(max(frames, 1) - 1, -1, -1) / fps
+        if robot.description.retargeting != "exact":
+            return self._source_at(robot, times, fps)
         joints = np.array([self.joints(t)[0] for t in times])
         held = np.clip(times, 0.0, self.trajectory.duration)
         turn = self._turn(held).as_quat(scalar_first=True)
         return qpos_to_motion(np.concatenate([self._root(held), turn, joints], axis=1), fps)
+
+    def _source_at(self, robot: Robot, times: Array, fps: float) -> Motion:
+        source = self.trajectory.source
+        if source is None:
+            raise RobotError(f"robot '{robot.name}': its joints cannot be read back as a motion")
+        return sample_at(source.motion, np.interp(times, self.trajectory.times, source.times), fps)

@@ -1,0 +1,13 @@
+"""What a robot's model lacks to stand in and to be looked at."""
+
+from __future__ import annotations
+
+import mujoco
+
+from motiondiffuse_ros.physics.humanoid import _add_scene
+
+
+def add_floor(spec: mujoco.MjSpec) -> None:
+    """Add floor, light and sky to a model without a floor."""
+    if not any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.worldbody.geoms):
+        _add_scene(spec)
