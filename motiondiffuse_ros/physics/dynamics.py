@@ -12,16 +12,16 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass, field
+from functools import cache
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
-from scipy.optimize import nnls
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
-from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.floor_forces import cross, floor_forces
 from motiondiffuse_ros.physics.geometry import body_probes
 from motiondiffuse_ros.physics.humanoid import humanoid_model
 from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
@@ -29,95 +29,132 @@ from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
 CONTACT_HEIGHT = 0.04
 """A point of the body below this [m] may push against the floor."""
 
-FRICTION = 1.0
-"""Coefficient of the friction cones (shoes on a dry floor)."""
+_ROOT = 6  # degrees of freedom of a free root
+_NO_TORQUE = np.zeros(3)
 
-_EDGES = np.array([[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -FRICTION, 1]])
-# spreads the load over the points that could carry it; without, any one of many answers comes
-_SPREAD = 0.02
+
+@dataclass(frozen=True, eq=False)
+class FloorPoints:
+    """Points of a body that may push against the floor.
+
+    Attributes:
+        places: World positions over time [T, P, 3], m.
+        bodies: Index of the MuJoCo body that each belongs to [P].
+    """
+
+    places: Array = field(repr=False)
+    bodies: NDArray[np.intp] = field(repr=False)
+
+    def touching(self) -> NDArray[np.bool_]:
+        """Return which points may push [T, P]: in a frame, or in a neighbour of it.
+
+        Central differences look that far.
+        """
+        return maximum_filter1d(self.places[..., 2] < CONTACT_HEIGHT, 3, axis=0)
 
 
 @dataclass(frozen=True, eq=False)
 class Dynamics:
-    """What the inner frames 1 to T - 2 of a motion need.
+    """What the inner frames 1 to T - 2 of a motion need; K joints beside the root.
 
     Attributes:
         residual_force: Norm of the force the floor cannot supply [T - 2], body weights.
         residual_torque: Norm of the torque about the centre of mass the floor cannot supply
             [T - 2], body weights times metre.
-        torques: Joint torques with the floor's forces acting [T - 2, 63], N m.
+        torques: Joint torques with the floor's forces acting [T - 2, K], N m.
+        power: Of each joint [T - 2, K], W; negative where it brakes.
+        centre: Centre of mass [T - 2, 3], m.
         supported: Whether anything may push against the floor [T - 2].
     """
 
     residual_force: Array = field(repr=False)
     residual_torque: Array = field(repr=False)
     torques: Array = field(repr=False)
+    power: Array = field(repr=False)
+    centre: Array = field(repr=False)
     supported: NDArray[np.bool_] = field(repr=False)
 
 
-def inverse_dynamics(motion: Motion) -> Dynamics:
-    """Find the forces behind a motion of three frames or more by central differences.
+def inverse_dynamics(motion: Motion, qpos: Array | None = None) -> Dynamics:
+    """Find the forces behind a motion of three frames or more.
 
-    A point counts as touching if it does so in the frame itself or a neighbour of it: the
-    differences look that far.
+    Args:
+        motion: Of the canonical skeleton.
+        qpos: Its `motion_to_qpos` [T, 70], where that is known already.
     """
-    model = _free_model()
-    data = mujoco.MjData(model)
-    qpos = motion_to_qpos(motion)
-    qvel, qacc = state_velocities(qpos, motion.fps)
     probes = body_probes()
-    points = probes.centres(motion)
-    points[..., 2] -= probes.radii
-    touching = maximum_filter1d(points[..., 2] < CONTACT_HEIGHT, 3, axis=0)
-    bodies = np.array([model.body(CANONICAL.names[j]).id for j in probes.joints])
-    weight = float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity))
+    places = probes.centres(motion)
+    places[..., 2] -= probes.radii
+    if qpos is None:
+        qpos = motion_to_qpos(motion)
+    points = FloorPoints(places, _probe_bodies())
+    return state_dynamics(_humanoid_without_contact(), qpos, motion.fps, points)
 
-    frames = motion.frames - 2
-    force, torque = np.zeros(frames), np.zeros(frames)
-    torques = np.empty((frames, model.nv - 6))
+
+def state_dynamics(model: mujoco.MjModel, qpos: Array, fps: float, points: FloorPoints) -> Dynamics:
+    """Find the forces behind the states of any body with a free root, by central differences.
+
+    Args:
+        model: Without contacts and limits (`without_contact`); the free joint comes first.
+        qpos: [T, 7 + K], T at least 3; quaternions of one hemisphere.
+        fps: Frames per second.
+        points: Where the floor may push.
+    """
+    data = mujoco.MjData(model)
+    qvel, qacc = state_velocities(qpos, fps)
+    frames = len(qpos) - 2
+    needed, centre = np.empty((frames, model.nv)), np.empty((frames, 3))
+    wrench, supplied = np.empty((frames, 6)), np.zeros((frames, model.nv))
+    touching, places = points.touching()[1:-1], points.places[1:-1]
+    weight = float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity))
     for i in range(frames):
         data.qpos, data.qvel, data.qacc = qpos[i + 1], qvel[i], qacc[i]
         mujoco.mj_inverse(model, data)
-        centre = data.subtree_com[1]
-        needed = _root_wrench(data, centre)
-        active = np.flatnonzero(touching[i + 1])
-        where = points[i + 1, active]
-        supplied, at_points = _floor_forces(needed, where - centre, weight)
-        left = needed - supplied
-        force[i] = np.linalg.norm(left[:3]) / weight
-        torque[i] = np.linalg.norm(left[3:]) / weight
-        generalised = np.zeros(model.nv)
-        for point, body, push in zip(where, bodies[active], at_points, strict=True):
-            if push.any():
-                mujoco.mj_applyFT(model, data, push, np.zeros(3), point, body, generalised)
-        torques[i] = (data.qfrc_inverse - generalised)[6:]
-    return Dynamics(force, torque, torques, np.any(touching[1:-1], axis=1))
+        needed[i], centre[i] = data.qfrc_inverse, data.subtree_com[1]
+        wrench[i] = _root_wrench(data) / weight
+    used = touching.any(axis=0)  # most of a body never touches the floor
+    left, pushes = floor_forces(wrench, places[:, used] - centre[:, None], touching[:, used])
+    where, bodies = places[:, used], points.bodies[used]
+    for i in range(frames):
+        data.qpos = qpos[i + 1]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        for p in np.flatnonzero(pushes[i, :, 2] > 0.0):
+            push = weight * pushes[i, p]
+            mujoco.mj_applyFT(model, data, push, _NO_TORQUE, where[i, p], bodies[p], supplied[i])
+    torques = (needed - supplied)[:, _ROOT:]
+    return Dynamics(
+        residual_force=np.linalg.norm(left[:, :3], axis=-1),
+        residual_torque=np.linalg.norm(left[:, 3:], axis=-1),
+        torques=torques,
+        power=torques * qvel[:, _ROOT:],
+        centre=centre,
+        supported=touching.any(axis=1),
+    )
 
 
-def _free_model() -> mujoco.MjModel:
-    """The humanoid without contacts and limits: what it takes to move, nothing to lean on."""
-    model = copy(humanoid_model())
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-    return model
+def without_contact(model: mujoco.MjModel) -> mujoco.MjModel:
+    """Return a copy without contacts and limits: what it takes to move, nothing to lean on."""
+    free = copy(model)
+    free.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+    return free
 
 
-def _root_wrench(data: mujoco.MjData, centre: Array) -> Array:
+@cache
+def _humanoid_without_contact() -> mujoco.MjModel:
+    return without_contact(humanoid_model())
+
+
+@cache
+def _probe_bodies() -> NDArray[np.intp]:
+    model = humanoid_model()
+    return np.array([model.body(CANONICAL.names[j]).id for j in body_probes().joints])
+
+
+def _root_wrench(data: mujoco.MjData) -> Array:
     """Return the force and the torque about the centre of mass, in the world, on the root."""
     force = data.qfrc_inverse[:3]
     # a free joint's rotational coordinates are in the body's own frame
-    torque = rot.rotate(data.qpos[3:7], data.qfrc_inverse[3:6])
-    return np.concatenate([force, torque + np.cross(data.qpos[:3] - centre, force)])
-
-
-def _floor_forces(needed: Array, arms: Array, weight: float) -> tuple[Array, Array]:
-    """Return the nearest wrench that points at arms [P, 3] can give, and their forces [P, 3]."""
-    if not len(arms):
-        return np.zeros(6), np.zeros((0, 3))
-    forces = np.tile(_EDGES, (len(arms), 1))
-    moments = np.cross(np.repeat(arms, len(_EDGES), axis=0), forces)
-    columns = np.concatenate([forces, moments], axis=1).T
-    count = columns.shape[1]
-    system = np.vstack([columns, _SPREAD * np.eye(count)])
-    shares, _ = nnls(system, np.concatenate([needed / weight, np.zeros(count)]))
-    pushes = (shares * weight)[:, None] * forces
-    return columns @ (shares * weight), pushes.reshape(len(arms), len(_EDGES), 3).sum(axis=1)
+    torque = data.xmat[1].reshape(3, 3) @ data.qfrc_inverse[3:6]
+    arm = data.qpos[:3] - data.subtree_com[1]
+    return np.concatenate([force, torque + cross(arm, force)])

@@ -1,4 +1,4 @@
-"""Small corrections that make a motion more plausible without changing what it shows."""
+"""The height of the floor that a motion stands on."""
 
 from __future__ import annotations
 
