@@ -12,45 +12,21 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass, field
-from functools import cache
+from functools import lru_cache
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
-from motiondiffuse_ros.motion import CANONICAL, Motion
+from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.body_states import BodyStates, humanoid_states
 from motiondiffuse_ros.physics.floor_forces import cross, floor_forces
-from motiondiffuse_ros.physics.geometry import body_probes
-from motiondiffuse_ros.physics.humanoid import humanoid_model
-from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
-
-CONTACT_HEIGHT = 0.04
-"""A point of the body below this [m] may push against the floor."""
+from motiondiffuse_ros.physics.hinge_table import hinge_table
+from motiondiffuse_ros.physics.state import state_velocities
 
 _ROOT = 6  # degrees of freedom of a free root
 _NO_TORQUE = np.zeros(3)
-
-
-@dataclass(frozen=True, eq=False)
-class FloorPoints:
-    """Points of a body that may push against the floor.
-
-    Attributes:
-        places: World positions over time [T, P, 3], m.
-        bodies: Index of the MuJoCo body that each belongs to [P].
-    """
-
-    places: Array = field(repr=False)
-    bodies: NDArray[np.intp] = field(repr=False)
-
-    def touching(self) -> NDArray[np.bool_]:
-        """Return which points may push [T, P]: in a frame, or in a neighbour of it.
-
-        Central differences look that far.
-        """
-        return maximum_filter1d(self.places[..., 2] < CONTACT_HEIGHT, 3, axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,33 +51,16 @@ class Dynamics:
     supported: NDArray[np.bool_] = field(repr=False)
 
 
-def inverse_dynamics(motion: Motion, qpos: Array | None = None) -> Dynamics:
-    """Find the forces behind a motion of three frames or more.
-
-    Args:
-        motion: Of the canonical skeleton.
-        qpos: Its `motion_to_qpos` [T, 70], where that is known already.
-    """
-    probes = body_probes()
-    places = probes.centres(motion)
-    places[..., 2] -= probes.radii
-    if qpos is None:
-        qpos = motion_to_qpos(motion)
-    points = FloorPoints(places, _probe_bodies())
-    return state_dynamics(_humanoid_without_contact(), qpos, motion.fps, points)
+def inverse_dynamics(motion: Motion) -> Dynamics:
+    """Find the forces behind a motion of three frames or more, of the humanoid."""
+    return state_dynamics(humanoid_states(motion, hinge_table()))
 
 
-def state_dynamics(model: mujoco.MjModel, qpos: Array, fps: float, points: FloorPoints) -> Dynamics:
-    """Find the forces behind the states of any body with a free root, by central differences.
-
-    Args:
-        model: Without contacts and limits (`without_contact`); the free joint comes first.
-        qpos: [T, 7 + K], T at least 3; quaternions of one hemisphere.
-        fps: Frames per second.
-        points: Where the floor may push.
-    """
+def state_dynamics(states: BodyStates) -> Dynamics:
+    """Find the forces behind three states or more of any body, by central differences."""
+    model, qpos, points = _without_contact(states.model), states.qpos, states.points
     data = mujoco.MjData(model)
-    qvel, qacc = state_velocities(qpos, fps)
+    qvel, qacc = state_velocities(qpos, states.fps)
     frames = len(qpos) - 2
     needed, centre = np.empty((frames, model.nv)), np.empty((frames, 3))
     wrench, supplied = np.empty((frames, 6)), np.zeros((frames, model.nv))
@@ -133,22 +92,12 @@ def state_dynamics(model: mujoco.MjModel, qpos: Array, fps: float, points: Floor
     )
 
 
-def without_contact(model: mujoco.MjModel) -> mujoco.MjModel:
+@lru_cache(maxsize=8)
+def _without_contact(model: mujoco.MjModel) -> mujoco.MjModel:
     """Return a copy without contacts and limits: what it takes to move, nothing to lean on."""
     free = copy(model)
     free.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     return free
-
-
-@cache
-def _humanoid_without_contact() -> mujoco.MjModel:
-    return without_contact(humanoid_model())
-
-
-@cache
-def _probe_bodies() -> NDArray[np.intp]:
-    model = humanoid_model()
-    return np.array([model.body(CANONICAL.names[j]).id for j in body_probes().joints])
 
 
 def _root_wrench(data: mujoco.MjData) -> Array:

@@ -8,6 +8,7 @@ a foot is that low at all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -56,27 +57,36 @@ class Skating:
     @property
     def support_slide(self) -> Array:
         """Speed of the corner of either foot that moves least [T - 1], m/s; 0 in flight."""
-        return np.nan_to_num(np.fmin(self.slide_speed[:, 0], self.slide_speed[:, 1]))
+        return np.nan_to_num(np.fmin.reduce(self.slide_speed, axis=1))
 
 
 def foot_skating(motion: Motion) -> Skating:
     """Measure a motion at its own rate; GMD's figures suppose 20 fps."""
     feet = motion.positions[:, [CANONICAL.index(f"{side}_foot") for side in SIDES]]
+    return skating_of(feet, [sole_probes(side).centres(motion) for side in SIDES], motion.fps)
+
+
+def skating_of(feet: Array, soles: Sequence[Array], fps: float) -> Skating:
+    """Measure any body with F feet, whose number takes the place of 2 in the shapes above.
+
+    Args:
+        feet: A point of each foot [T, F, 3], m, lower than `GMD_HEIGHT` where the foot stands.
+        soles: Points of each sole [T, C, 3], m.
+        fps: Frames per second.
+    """
     low = (feet[1:, :, 2] < GMD_HEIGHT) & (feet[:-1, :, 2] < GMD_HEIGHT)
-    speed = np.linalg.norm(np.diff(feet[..., :2], axis=0), axis=-1) * motion.fps
+    speed = np.linalg.norm(np.diff(feet[..., :2], axis=0), axis=-1) * fps
     smoothed = uniform_filter1d(speed, GMD_WINDOW, axis=0, mode="constant") if len(speed) else speed
-    slides = [_slide_speed(motion, side) for side in SIDES]
     return Skating(
         low=low,
         skating=low & (speed > GMD_SPEED) & (smoothed > GMD_SPEED),
-        slide_speed=np.stack(slides, axis=1),
+        slide_speed=np.stack([_slide_speed(corners, fps) for corners in soles], axis=1),
     )
 
 
-def _slide_speed(motion: Motion, side: str) -> Array:
-    corners = sole_probes(side).centres(motion)
+def _slide_speed(corners: Array, fps: float) -> Array:
     touching = corners[..., 2] < CONTACT_HEIGHT
     both = touching[1:] & touching[:-1]
-    speed = np.linalg.norm(np.diff(corners[..., :2], axis=0), axis=-1) * motion.fps
+    speed = np.linalg.norm(np.diff(corners[..., :2], axis=0), axis=-1) * fps
     slowest = np.min(speed, axis=1, where=both, initial=np.inf)
     return np.where(both.any(axis=1), slowest, np.nan)

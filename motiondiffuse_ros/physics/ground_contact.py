@@ -1,9 +1,9 @@
 """Penetrate, float, skate and their sum: PhysDiff (Yuan et al., ICCV 2023), section 4.
 
 PhysDiff takes the lowest vertex of the body mesh and tolerates 5 mm; a depth past the tolerance
-counts in full. Here the lowest point is that of the humanoid's capsules and boxes, and the points
-that skate are the corners of the soles. Everything is in millimetres a frame at the rate of the
-motion; the report takes the mean over all frames at 20 fps.
+counts in full. Here the lowest point is that of the body's solids, and the points that skate are
+those of the soles. Everything is in millimetres a frame at the rate of the motion; the report
+takes the mean over all frames at 20 fps.
 """
 
 from __future__ import annotations
@@ -46,18 +46,24 @@ class GroundErrors:
 def ground_errors(motion: Motion) -> GroundErrors:
     """Measure a motion against a floor at z = 0."""
     lowest = body_probes().heights(motion).min(axis=1)
+    soles = np.concatenate([sole_probes(side).centres(motion) for side in ("left", "right")], 1)
+    return ground_errors_of(lowest, soles)
+
+
+def ground_errors_of(lowest: Array, soles: Array) -> GroundErrors:
+    """Measure any body.
+
+    Args:
+        lowest: Height of its lowest point [T], m.
+        soles: Points of all soles [T, C, 3], m.
+    """
+    touching = soles[..., 2] < TOLERANCE
+    both = touching[1:] & touching[:-1]
+    moved = np.linalg.norm(np.diff(soles[..., :2], axis=0), axis=-1)
+    skate = np.sum(moved * both, axis=1) / np.maximum(both.sum(axis=1), 1)
     return GroundErrors(
         lowest=lowest,
         penetrate=1000.0 * np.where(lowest < -TOLERANCE, -lowest, 0.0),
         float_=1000.0 * np.where(lowest > TOLERANCE, lowest, 0.0),
-        skate=1000.0 * _skate(motion),
+        skate=1000.0 * np.append(skate, 0.0),
     )
-
-
-def _skate(motion: Motion) -> Array:
-    corners = np.concatenate([sole_probes(side).centres(motion) for side in ("left", "right")], 1)
-    touching = corners[..., 2] < TOLERANCE
-    both = touching[1:] & touching[:-1]
-    moved = np.linalg.norm(np.diff(corners[..., :2], axis=0), axis=-1)
-    mean = np.sum(moved * both, axis=1) / np.maximum(both.sum(axis=1), 1)
-    return np.append(mean, 0.0)

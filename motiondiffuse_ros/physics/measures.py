@@ -4,42 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
-from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.physics.dynamics import inverse_dynamics
-from motiondiffuse_ros.physics.foot_skating import SIDES, foot_skating
-from motiondiffuse_ros.physics.geometry import body_probes
-from motiondiffuse_ros.physics.ground_contact import ground_errors
-from motiondiffuse_ros.physics.hinge_table import hinge_table
+from motiondiffuse_ros.physics.balance import balance
+from motiondiffuse_ros.physics.body_states import BodyStates
+from motiondiffuse_ros.physics.dynamics import state_dynamics
+from motiondiffuse_ros.physics.foot_skating import CONTACT_HEIGHT, skating_of
+from motiondiffuse_ros.physics.ground_contact import ground_errors_of
 from motiondiffuse_ros.physics.joint_limits import POSITION_TOLERANCE, limit_excess
-from motiondiffuse_ros.physics.smoothness import joint_jerk
-from motiondiffuse_ros.physics.state import hinges_from_motion
+from motiondiffuse_ros.physics.self_collision import self_overlap
+from motiondiffuse_ros.physics.smoothness import jerk_of
 
 RATE = 20.0
 """All measures are taken at this rate [Hz]: that of the corpus, and what GMD's ratio supposes."""
 
 MIN_FRAMES = 5
 """Fewer frames at `RATE` have no dynamics to judge."""
-
-
-class Limits(Protocol):
-    """Limits of the 63 hinges, as a robot whose joints they are states them."""
-
-    @property
-    def lower(self) -> Array: ...
-
-    @property
-    def upper(self) -> Array: ...
-
-    @property
-    def velocity_limits(self) -> Array: ...
-
-    @property
-    def torque_limits(self) -> Array: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,49 +42,58 @@ class Series:
         return Series(self.values[start:stop], who)
 
 
-def measure(motion: Motion, limits: Limits) -> dict[str, Series]:
-    """Measure a motion.
+def measure(states: BodyStates) -> dict[str, Series]:
+    """Measure a body.
 
     Args:
-        motion: At `RATE`, `MIN_FRAMES` or more, floor at z = 0.
-        limits: Of the 63 hinges.
+        states: At `RATE`, `MIN_FRAMES` or more.
 
     Returns:
         Series by name: `penetrate`, `float`, `skate`, `phys_err` (mm, see `ground_contact`),
-        `skates` (0 or 1 where a foot is low, see `foot_skating`), `support_slide` (m/s),
-        `jerk` (m/s^3), `range_excess` (rad), `speed_excess` (rad/s), `torque_excess` (N m),
-        `residual_force` (body weights), `residual_torque` (body weights times metre).
+        `contact` (feet that touch the floor), `skates` (0 or 1 where a foot is low, see
+        `foot_skating`), `support_slide` (m/s), `jerk` (m/s^3), `range_excess` (rad),
+        `speed_excess` (rad/s), `torque_excess` (N m), `power` (W, the largest over the joints),
+        `residual_force` (body weights), `residual_torque` (body weights times metre), `balance`
+        and `next_step` (mm, see `balance`), `self_collision` (mm).
     """
-    frames = motion.frames
-    ground, skating = ground_errors(motion), foot_skating(motion)
-    heights = body_probes().heights(motion)
-    lowest = [CANONICAL.names[body_probes().joints[p]] for p in heights.argmin(axis=1)]
-
+    frames, limits = len(states.qpos), states.limits
+    heights = states.points.places[..., 2]
+    lowest = [states.point_names[p] for p in heights.argmin(axis=1)]
+    ground = ground_errors_of(heights.min(axis=1), np.concatenate(states.soles, axis=1))
+    skating = skating_of(states.feet, states.soles, states.fps)
     skates = np.where(skating.low.any(axis=1), skating.skating.any(axis=1), np.nan)
     support = np.argmin(np.where(np.isnan(skating.slide_speed), np.inf, skating.slide_speed), 1)
-    feet = [f"{side} foot" for side in SIDES]
+    feet = [name.replace("_", " ") for name in states.foot_names]
+    standing = [sole[..., 2].min(axis=1) < CONTACT_HEIGHT for sole in states.soles]
 
-    jerk = joint_jerk(motion)
-    dynamics = inverse_dynamics(motion)
-    names = hinge_table().names
+    dynamics = state_dynamics(states)
+    touching = states.points.touching()[1:-1]
+    poise = balance(dynamics.centre, states.points.places[1:-1], touching, states.fps)
+    overlap, overlapping = self_overlap(states.model, states.qpos)
     excess = limit_excess(
-        hinges_from_motion(motion), motion.fps, limits.lower, limits.upper, limits.velocity_limits
+        states.qpos[:, 7:], states.fps, limits.lower, limits.upper, limits.velocity_limits
     )
     position = np.where(excess.position > POSITION_TOLERANCE, excess.position, 0.0)
     torque = np.maximum(np.abs(dynamics.torques) - limits.torque_limits, 0.0)
+    names = states.joint_names
     return {
         "penetrate": Series(ground.penetrate, lowest),
         "float": Series(ground.float_),
         "skate": Series(ground.skate),
         "phys_err": Series(ground.phys_err),
+        "contact": Series(np.sum(standing, axis=0).astype(float)),
         "skates": _aligned(skates, frames),
         "support_slide": _aligned(skating.support_slide, frames, [feet[s] for s in support]),
-        "jerk": _worst(jerk, frames, CANONICAL.names),
+        "jerk": _worst(jerk_of(states.places, states.fps), frames, states.place_names),
         "range_excess": _worst(position, frames, names),
         "speed_excess": _worst(excess.speed, frames, names),
         "torque_excess": _worst(torque, frames, names),
+        "power": _worst(np.abs(dynamics.power), frames, names),
         "residual_force": _aligned(dynamics.residual_force, frames),
         "residual_torque": _aligned(dynamics.residual_torque, frames),
+        "balance": _aligned(1000.0 * np.maximum(poise.from_support, 0.0), frames),
+        "next_step": _aligned(1000.0 * np.maximum(poise.from_next_step, 0.0), frames),
+        "self_collision": Series(1000.0 * overlap, overlapping),
     }
 
 

@@ -12,9 +12,10 @@ import numpy as np
 
 from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.physics.body_states import Limits, humanoid_states
 from motiondiffuse_ros.physics.criteria import CRITERIA
 from motiondiffuse_ros.physics.hinge_table import hinge_table
-from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE, Limits, Series, measure
+from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE, Series, measure
 from motiondiffuse_ros.physics.tracking import track
 
 _ASSESSED = 0.2  # share of the work that is done before the simulation
@@ -127,7 +128,7 @@ def assess(
             f"dynamics need {(MIN_FRAMES - 1) / RATE:.2f} s or more"
         )
     _check(cancelled)
-    measures = measure(sampled, robot or hinge_table())
+    measures = measure(humanoid_states(sampled, robot or hinge_table()))
     _check(cancelled)
     values, verdict, reasons = judge(measures)
     metrics: dict[str, float | None] = dict.fromkeys(METRICS)
