@@ -1,4 +1,4 @@
-"""Can a body do it? The motion as the reference of a PD controller under gravity and contact.
+"""The motion as the reference of a PD controller under gravity and contact.
 
 Nobody holds the humanoid: its joints follow the reference by torques within their limits, and its
 root goes where the feet take it. A PD controller has no balance of its own, so that even real
@@ -15,24 +15,18 @@ from functools import cache
 import mujoco
 import numpy as np
 
-from motiondiffuse_ros.errors import Cancelled, PhysicsError
+from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.humanoid import DAMPING_RATIO, TIMESTEP, humanoid_model
 from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
-
-FALL_DISTANCE = 0.5
-"""Fallen once the joints are this far from the reference in the mean [m] (PHC's rule)."""
+from motiondiffuse_ros.physics.tracking.model import DIVERGED
+from motiondiffuse_ros.physics.tracking.reference import FALL_DISTANCE, check_trackable
 
 CONTROL_RATE = 100.0
 """How often the controller's targets are renewed [Hz]."""
 
 _STEPS = round(1.0 / CONTROL_RATE / TIMESTEP)
-_DIVERGED = (
-    mujoco.mjtWarning.mjWARN_BADQPOS,
-    mujoco.mjtWarning.mjWARN_BADQVEL,
-    mujoco.mjtWarning.mjWARN_BADQACC,
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +68,7 @@ def track(
         PhysicsError: If the motion is too short or not finite.
         Cancelled: If `cancelled` says so.
     """
-    if motion.duration < 0.1 or not np.isfinite(motion.root).all():
-        raise PhysicsError("tracking needs a finite motion of 0.1 s or more")
+    check_trackable(motion)
     reference = motion.resample(CONTROL_RATE)
     qpos = motion_to_qpos(reference)
     velocity, _ = state_velocities(qpos, CONTROL_RATE)
@@ -94,7 +87,7 @@ def track(
             raise Cancelled("tracking was cancelled")
         data.ctrl = targets[frame]
         mujoco.mj_step(model, data, _STEPS)
-        diverged = any(data.warning[kind].number for kind in _DIVERGED)
+        diverged = any(data.warning[kind].number for kind in DIVERGED)
         if diverged:
             break
         error = np.linalg.norm(data.xpos[bodies] - reference.positions[frame], axis=1).mean()
