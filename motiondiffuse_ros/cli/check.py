@@ -28,7 +28,7 @@ class Check:
     file: Annotated[Path, tyro.conf.Positional]
     """A BVH file of a known skeleton, or a motion.npz of this package."""
     robot: str = "humanoid"
-    """Whose joint limits count."""
+    """Whose joint limits count; the humanoid's where its joints are others."""
     out: Path | None = None
     """Also write the report here, as JSON."""
     track: bool = True
@@ -77,7 +77,7 @@ def check(
         task = bar.add_task("physics", total=1.0)
         report = assess(
             motion,
-            robot=limits,
+            robot=limits if limits.is_canonical else None,
             track=track,
             progress=lambda share: bar.update(task, completed=share),
         )

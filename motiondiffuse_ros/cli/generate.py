@@ -25,7 +25,7 @@ class Generate:
     """Sample a motion from text, check it, and write it as a joint trajectory.
 
     Leaves in the output folder: plan.json, report.json, motion.bvh, motion.npz, trajectory.csv,
-    root.csv and motion.gif.
+    root.csv, motion.gif, and for whole-body trackers tracking.csv and tracking.npz.
     """
 
     text: Annotated[str | None, tyro.conf.Positional] = None
@@ -53,7 +53,7 @@ class Generate:
     scheduler: str = "ddim"
     """ddim, ddpm or dpm-solver++."""
     robot: str | None = None
-    """Robot to retarget to."""
+    """Robot to retarget to: humanoid, g1, or a description file (docs/robots.md)."""
     weights: Path | None = None
     """Checkpoint folder; the shipped one if not given."""
     text_encoder: Path | None = None

@@ -12,7 +12,7 @@ from motiondiffuse_ros.robots.robot import Robot
 DISTANCE = 0.006
 """That solids keep from each other [m]."""
 
-_WATCHED = 0.05  # distance at which a pair begins to count [m]
+_WATCHED = 0.03  # distance at which a pair begins to count [m]
 _MOST = 0.02  # by which a step moves a pair apart that is too near [m]
 
 

@@ -31,7 +31,7 @@ NEEDED = (
 )
 """Canonical joints that a description has to map."""
 
-_FIELDS = ("name", "model", "bodies", "t_pose", "rest", "speed_limits")
+_FIELDS = ("model", "bodies", "t_pose", "rest", "speed_limits")
 _Point = tuple[str, tuple[float, float, float]]
 
 
@@ -41,7 +41,6 @@ class DescriptionFile:
 
     Attributes:
         path: Of the file.
-        name: What the robot is called.
         model: MJCF, as `find_model` takes it.
         bodies: For each canonical joint the body that follows it, and the point in that body's
             frame that stands for the joint [m].
@@ -51,7 +50,6 @@ class DescriptionFile:
     """
 
     path: Path
-    name: str
     model: str
     bodies: Mapping[str, _Point] = field(repr=False)
     t_pose: Mapping[str, float] = field(repr=False)
@@ -82,24 +80,23 @@ class DescriptionFile:
             raise ValueError(f"must be a mapping with the fields {', '.join(_FIELDS)}")
         if unknown := [str(key) for key in data if key not in _FIELDS]:
             raise ValueError(f"unknown field '{unknown[0]}'; the fields are {', '.join(_FIELDS)}")
-        for key, example in (("name", "g1"), ("model", "unitree_g1/g1.xml")):
-            if not isinstance(data.get(key), str) or not data[key].strip():
-                raise ValueError(f"{key} must be a text such as {example}, got {data.get(key)!r}")
+        model = data.get("model")
+        if not isinstance(model, str) or not model.strip():
+            raise ValueError(f"model must be a file such as unitree_g1/g1.xml, got {model!r}")
         speeds = _numbers(data, "speed_limits")
         if slow := [name for name, speed in speeds.items() if speed <= 0.0]:
             raise ValueError(f"speed_limits.{slow[0]} must be above 0 rad/s, got {speeds[slow[0]]}")
         return cls(
             path=path,
-            name=data["name"].strip(),
-            model=data["model"].strip(),
+            model=model.strip(),
             bodies=_bodies(data.get("bodies")),
             t_pose=_numbers(data, "t_pose"),
             rest=_numbers(data, "rest"),
             speed_limits=speeds,
         )
 
-    def describe(self) -> RobotDescription:
-        """Return the description, its model compiled.
+    def describe(self, name: str) -> RobotDescription:
+        """Return the description of a robot of a name, its model compiled.
 
         Raises:
             RobotError: If there is no model, or it does not fit the file.
@@ -119,7 +116,7 @@ class DescriptionFile:
             limits.update(dict.fromkeys(named, speed))
         standing_on_floor(model, np.array([self.rest.get(joint, 0.0) for joint in joints]))
         return RobotDescription(
-            name=self.name,
+            name=name,
             model=lambda: model,
             speed_limits=limits,
             rest=self.rest,

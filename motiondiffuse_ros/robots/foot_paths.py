@@ -42,12 +42,12 @@ class FootPath:
     Attributes:
         ankle: Of the robot [T, 3], m.
         rotation: Of the foot, from its T-pose [T, 4], wxyz.
-        standing: Whether it bears on heel or toes [T].
+        grip: From 0 in the air to 1 where it bears on heel or toes [T].
     """
 
     ankle: Array = field(repr=False)
     rotation: Array = field(repr=False)
-    standing: NDArray[np.bool_] = field(repr=False)
+    grip: Array = field(repr=False)
 
 
 def foot_paths(motion: Motion, body: Embodiment) -> dict[str, FootPath]:
@@ -70,12 +70,12 @@ def _foot_path(
     planned = body.scale * motion.joint(f"{side}_ankle")[:, :2] + _widened(motion, body, side)
     ankle = np.empty((motion.frames, 3))
     ankle[:, :2] = planned + _correction(planned, corners[..., :2], heel, toes, body.scale)
-    in_air = 1.0 - _soft(heel | toes, motion.fps)
-    ankle[:, 2] = _height(motion, body, side, corners[..., 2], in_air)
-    return FootPath(ankle, rotation, heel | toes)
+    grip = _soft(heel | toes, motion.fps)
+    ankle[:, 2] = _height(motion, body, side, corners[..., 2], grip)
+    return FootPath(ankle, rotation, grip)
 
 
-def _height(motion: Motion, body: Embodiment, side: str, corners: Array, in_air: Array) -> Array:
+def _height(motion: Motion, body: Embodiment, side: str, corners: Array, grip: Array) -> Array:
     """Return the ankle's height at which heel and toes are as high as the skeleton's [T], m.
 
     The toes of the skeleton bend, the robot's do not: its toes are where the ball of the foot is.
@@ -85,11 +85,11 @@ def _height(motion: Motion, body: Embodiment, side: str, corners: Array, in_air:
         body: Of the robot.
         side: Of the foot.
         corners: Heights of the sole's corners above the ankle, rear ones first [T, 4], m.
-        in_air: 0 where the foot stands, 1 where it does not [T].
+        grip: Of `FootPath` [T].
     """
     heel = sole_probes(side).centres(motion)[:, :2, 2].min(axis=1)
     ball = motion.joint(f"{side}_foot")[:, 2] - TOE_HEIGHT
-    wanted = body.scale * np.maximum(np.stack([heel, ball], axis=1), 0.0) * in_air[:, None]
+    wanted = body.scale * np.maximum(np.stack([heel, ball], axis=1), 0.0) * (1.0 - grip[:, None])
     lowest = corners.reshape(-1, 2, 2).min(axis=2)
     return np.max(wanted - lowest, axis=1)
 

@@ -29,18 +29,20 @@ LIMIT_MARGIN = np.radians(2.5)
 KNEE_RESERVE = 0.015
 """Hips are lowered by this part of the leg, so that straight legs have a way to give."""
 
-_MOST_ITERATIONS, _FIRST_ITERATIONS = 8, 60
-_SETTLED = 0.01  # largest change of a joint in a step that is the last one [rad]
-_PACE = 0.8  # of the speed limits, from frame to frame; splines through the frames overshoot
+_MOST_ITERATIONS, _FIRST_ITERATIONS = 6, 60
+_SETTLED = 0.02  # largest change of a joint in a step that is the last one [rad]
+_PACE = 0.65  # of the speed limits, from frame to frame; splines through the frames overshoot
+_TOLD_EVERY = 10  # frames between two reports of progress
 _DT = 1.0  # tasks and limits here speak of steps, not of speeds
 _DAMPING = 5e-4
 _REST_COST = 0.04
 
+_FOOT_ORIENTATION = (0.5, 4.0)  # cost in the air and on the floor
 # (position, orientation): metres weigh as much as radians at a tenth of a metre or so
 _COSTS = {
     "pelvis": (8.0, 0.8),
     "spine3": (0.0, 1.2),
-    "ankle": (30.0, 4.0),
+    "ankle": (30.0, _FOOT_ORIENTATION[1]),
     "elbow": (2.0, 0.0),
     "wrist": (3.0, 0.06),
     "head": (0.0, 0.3),
@@ -105,9 +107,13 @@ class InverseKinematics:
             self._configuration.update(qpos)
             for joint, task in self._tasks.items():
                 task.set_target(mink.SE3(wxyz_xyz=targets[joint][frame]))
+            for side in SIDES:
+                low, high = _FOOT_ORIENTATION
+                cost = low + (high - low) * feet[side].grip[frame]
+                self._tasks[f"{side}_ankle"].set_orientation_cost(cost)
             self._solve(_MOST_ITERATIONS if frame else _FIRST_ITERATIONS)
             out[frame] = qpos = self._configuration.q.copy()
-            if progress is not None:
+            if progress is not None and frame % _TOLD_EVERY == _TOLD_EVERY - 1:
                 progress((frame + 1) / motion.frames)
         return out
 

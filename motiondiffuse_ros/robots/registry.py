@@ -31,7 +31,7 @@ def robot_refusal(name: str) -> str:
 
 
 def get_robot(name: str) -> Robot:
-    """Return a robot; loaded once a process.
+    """Return a robot; loaded once a process. It has the name by which it was asked for.
 
     Args:
         name: One of `available_robots()`, or the path of a description (.yaml or .yml).
@@ -50,7 +50,7 @@ def _load(name: str) -> Robot:
     if name == HUMANOID:
         return load_robot(describe_humanoid())
     path = Path(name) if _is_path(name) else shipped_descriptions()[name]
-    return load_robot(DescriptionFile.read(path).describe())
+    return load_robot(DescriptionFile.read(path).describe(name))
 
 
 def _is_path(name: str) -> bool:

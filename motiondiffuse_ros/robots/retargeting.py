@@ -72,7 +72,7 @@ def retarget(
 
 def path_scale(robot: Robot) -> float:
     """Return the length of a robot's way over that of the motion's."""
-    return 1.0 if robot.description.retargeting == "exact" else embodiment(robot).scale
+    return 1.0 if robot.is_canonical else embodiment(robot).scale
 
 
 def to_joint_positions(robot: Robot, motion: Motion) -> Array:

@@ -45,7 +45,7 @@ class Robot:
     """A robot ready for use; J actuated joints in the order of the model's `qpos[7:]`.
 
     Attributes:
-        name: What requests call it.
+        name: What requests call it: a name, or the path of its description.
         model: The MuJoCo model, shared: do not change it.
         joint_names: [J].
         lower: Lower position limits [J], rad.
@@ -65,6 +65,11 @@ class Robot:
     torque_limits: Array = field(repr=False)
     rest_positions: Array = field(repr=False)
     description: RobotDescription = field(repr=False)
+
+    @property
+    def is_canonical(self) -> bool:
+        """Whether its joints are the canonical skeleton's own."""
+        return self.description.retargeting == "exact"
 
 
 def load_robot(description: RobotDescription) -> Robot:

@@ -67,7 +67,7 @@ def save_tracking_npz(trajectory: JointTrajectory, robot: Robot, path: Path) -> 
         "joint_names": np.array(robot.joint_names),
         "body_names": np.array([model.body(b).name for b in bodies]),
     }
-    if robot.description.retargeting == "ik":
+    if not robot.is_canonical:
         named |= {
             "foot_names": np.array([f"{side}_foot" for side in SIDES]),
             "foot_contacts": foot_contacts(trajectory, robot),

@@ -80,7 +80,7 @@ class TrajectoryState:
         """
         frames = int(np.floor(min(time, seconds) * fps + 1e-6)) + 1
         times = time - np.arange(max(frames, 1) - 1, -1, -1) / fps
-        if robot.description.retargeting != "exact":
+        if not robot.is_canonical:
             return self._source_at(robot, times, fps)
         joints = np.array([self.joints(t)[0] for t in times])
         held = np.clip(times, 0.0, self.trajectory.duration)

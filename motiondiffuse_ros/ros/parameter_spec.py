@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,7 @@ class ParameterSpec:
         description: For `ros2 param describe`, with the unit.
         bounds: Least and greatest value of a number.
         choices: Valid values of a string; empty = any.
+        check: Says what is wrong with a value beyond that; empty = nothing.
         at_configure: Read by `configure` alone, so it cannot be changed while configured.
     """
 
@@ -34,6 +35,7 @@ class ParameterSpec:
     bounds: tuple[float, float] | None = None
     choices: tuple[str, ...] = ()
     at_configure: bool = False
+    check: Callable[[str], str] | None = None
 
     def descriptor(self) -> ParameterDescriptor:
         """Return the descriptor that makes rclpy refuse values out of bounds."""
@@ -63,6 +65,8 @@ class ParameterSpec:
         """Return what is wrong with a value beyond its type and bounds; empty = nothing."""
         if self.choices and value not in self.choices:
             return f"it is one of {', '.join(self.choices)}"
+        if self.check is not None and isinstance(value, str):
+            return self.check(value)
         if isinstance(value, float) and not math.isfinite(value):
             return "it is a finite number"
         return ""

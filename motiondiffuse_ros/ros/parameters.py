@@ -7,7 +7,7 @@ from pathlib import Path
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
 from motiondiffuse_ros.planner import PlannerConfig
 from motiondiffuse_ros.request import LIMITS, MotionRequest
-from motiondiffuse_ros.robots import available_robots
+from motiondiffuse_ros.robots import available_robots, robot_refusal
 from motiondiffuse_ros.ros.parameter_spec import Parameters, ParameterSpec
 
 _DEFAULT = PlannerConfig()
@@ -22,9 +22,9 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     ),
     "robot": ParameterSpec(
         "humanoid",
-        "robot of requests that name none",
-        choices=available_robots(),
+        f"robot of requests that name none: {', '.join(available_robots())}, or a description file",
         at_configure=True,
+        check=robot_refusal,
     ),
     "device": ParameterSpec(_DEFAULT.device, "torch device: cpu, cuda", at_configure=True),
     "scheduler": ParameterSpec(
@@ -59,6 +59,9 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         "of trajectories and ~/reference [Hz]",
         (1.0, 1000.0),
         at_configure=True,
+    ),
+    "accelerations": ParameterSpec(
+        _DEFAULT.accelerations, "trajectories have accelerations too", at_configure=True
     ),
     "track": ParameterSpec(
         _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
@@ -111,6 +114,7 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         planted_below=parameters["planted_below"],
         candidates=parameters["candidates"],
         control_rate=parameters["control_rate"],
+        accelerations=parameters["accelerations"],
         device=parameters["device"],
         track=parameters["track"],
     )

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from motiondiffuse_ros.robots import available_robots
+from motiondiffuse_ros.robots import available_robots, robot_refusal
 from motiondiffuse_ros.ros.parameter_spec import ParameterSpec
 
 SIM_PARAMETERS: dict[str, ParameterSpec] = {
-    "robot": ParameterSpec("humanoid", "robot to simulate", choices=available_robots()),
+    "robot": ParameterSpec(
+        "humanoid",
+        f"robot to simulate: {', '.join(available_robots())}, or a description file",
+        check=robot_refusal,
+    ),
     "root": ParameterSpec(
         "assisted",
         "floating base: held on its path by an outside force, or left to the joints",

@@ -18,8 +18,9 @@ def tree(file: Path) -> ET.Element:
     return ET.parse(file).getroot()
 
 
-def test_there_is_one_for_the_node_and_one_for_the_demo():
-    assert {f.name for f in FILES} == {"motiondiffuse.launch.xml", "demo.launch.xml"}
+def test_there_is_one_for_the_node_the_demo_and_the_g1():
+    stems = {file.name.partition(".")[0] for file in FILES}
+    assert stems == {"motiondiffuse", "demo", "g1"}
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda f: f.name)

@@ -24,8 +24,13 @@ ROOT_JOINT = "root"
 
 
 def joint_trajectory_to_message(trajectory: JointTrajectory, header: Header) -> JointTrajectoryMsg:
-    """Write positions [rad] and velocities [rad/s] of every joint over time."""
-    points = zip(trajectory.times, trajectory.positions, trajectory.velocities, strict=True)
+    """Write positions [rad], velocities [rad/s] and, if known, accelerations over time."""
+    accelerations = trajectory.accelerations
+    if accelerations is None:
+        accelerations = np.empty((len(trajectory.times), 0))
+    points = zip(
+        trajectory.times, trajectory.positions, trajectory.velocities, accelerations, strict=True
+    )
     return JointTrajectoryMsg(
         header=header,
         joint_names=list(trajectory.joint_names),
@@ -33,9 +38,10 @@ def joint_trajectory_to_message(trajectory: JointTrajectory, header: Header) -> 
             JointTrajectoryPoint(
                 positions=array("d", position),
                 velocities=array("d", velocity),
+                accelerations=array("d", acceleration),
                 time_from_start=to_duration(t),
             )
-            for t, position, velocity in points
+            for t, position, velocity, acceleration in points
         ],
     )
 
