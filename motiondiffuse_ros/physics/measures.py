@@ -10,7 +10,7 @@ import numpy as np
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.balance import balance
 from motiondiffuse_ros.physics.body_states import BodyStates
-from motiondiffuse_ros.physics.dynamics import state_dynamics
+from motiondiffuse_ros.physics.dynamics import Dynamics
 from motiondiffuse_ros.physics.foot_skating import CONTACT_HEIGHT, skating_of
 from motiondiffuse_ros.physics.ground_contact import ground_errors_of
 from motiondiffuse_ros.physics.joint_limits import POSITION_TOLERANCE, limit_excess
@@ -42,19 +42,20 @@ class Series:
         return Series(self.values[start:stop], who)
 
 
-def measure(states: BodyStates) -> dict[str, Series]:
+def measure(states: BodyStates, dynamics: Dynamics) -> dict[str, Series]:
     """Measure a body.
 
     Args:
         states: At `RATE`, `MIN_FRAMES` or more.
+        dynamics: Of those states.
 
     Returns:
         Series by name: `penetrate`, `float`, `skate`, `phys_err` (mm, see `ground_contact`),
-        `contact` (feet that touch the floor), `skates` (0 or 1 where a foot is low, see
-        `foot_skating`), `support_slide` (m/s), `jerk` (m/s^3), `range_excess` (rad),
-        `speed_excess` (rad/s), `torque_excess` (N m), `power` (W, the largest over the joints),
-        `residual_force` (body weights), `residual_torque` (body weights times metre), `balance`
-        and `next_step` (mm, see `balance`), `self_collision` (mm).
+        `contact_left_foot` and so on (1 where it touches the floor), `skates` (0 or 1 where a
+        foot is low, see `foot_skating`), `support_slide` (m/s), `jerk` (m/s^3), `range_excess`
+        (rad), `speed_excess` (rad/s), `torque_excess` (N m), `power` (W, the largest over the
+        joints), `residual_force` (body weights), `residual_torque` (body weights times metre),
+        `balance` and `next_step` (mm, see `balance`), `self_collision` (mm).
     """
     frames, limits = len(states.qpos), states.limits
     heights = states.points.places[..., 2]
@@ -64,9 +65,11 @@ def measure(states: BodyStates) -> dict[str, Series]:
     skates = np.where(skating.low.any(axis=1), skating.skating.any(axis=1), np.nan)
     support = np.argmin(np.where(np.isnan(skating.slide_speed), np.inf, skating.slide_speed), 1)
     feet = [name.replace("_", " ") for name in states.foot_names]
-    standing = [sole[..., 2].min(axis=1) < CONTACT_HEIGHT for sole in states.soles]
+    contacts = {
+        f"contact_{name}": Series((sole[..., 2].min(axis=1) < CONTACT_HEIGHT).astype(float))
+        for name, sole in zip(states.foot_names, states.soles, strict=True)
+    }
 
-    dynamics = state_dynamics(states)
     touching = states.points.touching()[1:-1]
     poise = balance(dynamics.centre, states.points.places[1:-1], touching, states.fps)
     overlap, overlapping = self_overlap(states.model, states.qpos)
@@ -81,7 +84,7 @@ def measure(states: BodyStates) -> dict[str, Series]:
         "float": Series(ground.float_),
         "skate": Series(ground.skate),
         "phys_err": Series(ground.phys_err),
-        "contact": Series(np.sum(standing, axis=0).astype(float)),
+        **contacts,
         "skates": _aligned(skates, frames),
         "support_slide": _aligned(skating.support_slide, frames, [feet[s] for s in support]),
         "jerk": _worst(jerk_of(states.places, states.fps), frames, states.place_names),

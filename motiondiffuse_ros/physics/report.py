@@ -14,10 +14,14 @@ from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics.body_states import Limits, humanoid_states
 from motiondiffuse_ros.physics.criteria import CRITERIA
+from motiondiffuse_ros.physics.dynamics import state_dynamics
+from motiondiffuse_ros.physics.fitted_score import fitted_score
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE, Series, measure
+from motiondiffuse_ros.physics.statistics import statistics
 from motiondiffuse_ros.physics.tracking import track
 
+_STATISTICS_NAMED = 2
 _ASSESSED = 0.2  # share of the work that is done before the simulation
 
 PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
@@ -25,7 +29,8 @@ PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
 METRICS = (
     *("penetrate_mm", "float_mm", "skate_mm", "phys_err_mm", "skating_ratio"),
     *("contact_skating_ratio", "joint_limit_violation", "joint_velocity_violation", "peak_jerk"),
-    *("root_residual_force_bw", "root_residual_torque", "torque_violation"),
+    *("root_residual_force_bw", "root_residual_torque", "torque_violation", "peak_power_w"),
+    *("off_support_mm", "off_next_step_mm", "self_collision"),
     *("time_to_fall_s", "tracking_mpjpe_mm"),
 )
 """The keys that every report has, null where not computed. docs/physics.md defines each."""
@@ -80,6 +85,7 @@ class Report:
         score: 0 to 1, higher is more plausible; continuous, for choosing among candidates.
         metrics: `METRICS` and more, None where not computed.
         segments: The same for each segment of the request.
+        series: Every measure frame by frame at 20 Hz (`measures.measure`).
     """
 
     verdict: str
@@ -87,14 +93,21 @@ class Report:
     score: float
     metrics: dict[str, float | None] = field(repr=False)
     segments: tuple[SegmentReport, ...] = ()
+    series: Mapping[str, Series] = field(default_factory=dict, repr=False)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `report.json` holds."""
-        return asdict(self)
+        """Return what `report.json` holds: everything but the series."""
+        return asdict(replace(self, series={})) | {"series": sorted(self.series)}
 
     def save(self, path: Path) -> None:
         """Write `report.json`."""
         path.write_text(json.dumps(self.to_dict(), indent=2) + "\n", encoding="utf-8")
+
+    def save_series(self, path: Path) -> None:
+        """Write the series as NPZ: `time` [s], and each measure by name, NaN where undefined."""
+        frames = max((len(s.values) for s in self.series.values()), default=0)
+        arrays = {name: series.values for name, series in self.series.items()}
+        np.savez_compressed(path, time=np.arange(frames) / RATE, **arrays)
 
 
 def assess(
@@ -120,24 +133,20 @@ def assess(
         Cancelled: If `cancelled` says so.
     """
     if not (np.isfinite(motion.root).all() and np.isfinite(motion.rotations).all()):
-        return _unjudged("the motion holds values that are not finite")
+        return unjudged("the motion holds values that are not finite")
     sampled = motion.resample(RATE)
     if sampled.frames < MIN_FRAMES:
-        return _unjudged(
+        return unjudged(
             f"the motion lasts {motion.duration:.2f} s; "
             f"dynamics need {(MIN_FRAMES - 1) / RATE:.2f} s or more"
         )
     _check(cancelled)
-    measures = measure(humanoid_states(sampled, robot or hinge_table()))
+    states = humanoid_states(sampled, robot or hinge_table())
+    dynamics = state_dynamics(states)
+    measures = measure(states, dynamics)
     _check(cancelled)
-    values, verdict, reasons = judge(measures)
-    metrics: dict[str, float | None] = dict.fromkeys(METRICS)
-    report = Report(
-        verdict=verdict,
-        reasons=reasons,
-        score=_score(values),
-        metrics=metrics | _plain_metrics(measures) | values,
-        segments=tuple(_segment(segment, measures) for segment in segments),
+    report = with_fitted_score(
+        report_on(measures, segments), statistics(sampled, states, dynamics), sampled.duration
     )
     if progress is not None:
         progress(_ASSESSED if track else 1.0)
@@ -145,6 +154,41 @@ def assess(
         return report
     rest = None if progress is None else lambda x: progress(_ASSESSED + (1.0 - _ASSESSED) * x)
     return with_tracking(report, motion, cancelled=cancelled, progress=rest)
+
+
+def report_on(measures: Mapping[str, Series], segments: Sequence[TimedText] = ()) -> Report:
+    """Put the measures of any body into a report by the criteria alone."""
+    values, verdict, reasons = judge(measures)
+    metrics: dict[str, float | None] = dict.fromkeys(METRICS)
+    return Report(
+        verdict=verdict,
+        reasons=reasons,
+        score=_score(values),
+        metrics=metrics | _plain_metrics(measures) | values,
+        segments=tuple(_segment(segment, measures) for segment in segments),
+        series=measures,
+    )
+
+
+def with_fitted_score(report: Report, figures: Mapping[str, float], seconds: float) -> Report:
+    """Join what the criteria say with the score fitted to real and broken clips.
+
+    Args:
+        report: By the criteria alone.
+        figures: The motion's `statistics`.
+        seconds: Duration of the motion, for the reasons.
+    """
+    model = fitted_score()
+    likely = model.score(figures)
+    metrics = {**report.metrics, "criteria_score": report.score, "fitted_score": likely}
+    verdict, reasons = report.verdict, report.reasons
+    if likely < model.marginal_below:
+        told = model.worst(figures, _STATISTICS_NAMED)
+        reasons = (*reasons, *(f"{words} at 0.0-{seconds:.1f} s" for words in told))
+        harsh = likely < model.implausible_below or verdict == IMPLAUSIBLE
+        verdict = IMPLAUSIBLE if harsh else MARGINAL
+    score = _joined(report.score, likely)
+    return replace(report, verdict=verdict, reasons=reasons, score=score, metrics=metrics)
 
 
 def with_tracking(
@@ -218,6 +262,11 @@ def _plain_metrics(measures: Mapping[str, Series]) -> dict[str, float | None]:
     out: dict[str, float | None] = {
         key: float(np.mean(measures[name].values)) for key, name in means.items()
     }
+    balance = {"off_support_mm": "balance", "off_next_step_mm": "next_step"}
+    for key, name in balance.items():
+        out[key] = float(np.mean(np.nan_to_num(measures[name].values)))
+    out["peak_power_w"] = float(np.nanmax(measures["power"].values))
+    out["self_collision"] = float(np.mean(measures["self_collision"].values > 0.0))
     skates = measures["skates"].values[:-1]
     out["skating_ratio"] = float(np.mean(np.nan_to_num(skates)))
     out["mean_jerk"] = float(np.nanmean(measures["jerk"].values))
@@ -233,7 +282,13 @@ def _score(values: Mapping[str, float]) -> float:
     return float(1.0 / (1.0 + np.sqrt(np.sum(shares**4))))
 
 
-def _unjudged(reason: str) -> Report:
+def _joined(by_criteria: float, fitted: float) -> float:
+    """Return the geometric mean: either one at zero is enough."""
+    return float(np.sqrt(by_criteria * fitted))
+
+
+def unjudged(reason: str) -> Report:
+    """Return the report on what cannot be judged: implausible."""
     return Report(IMPLAUSIBLE, (reason,), 0.0, dict.fromkeys(METRICS))
 
 

@@ -1,0 +1,47 @@
+"""Helpers that the statistics share."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motiondiffuse_ros.motion.rotations import Array
+
+PLANTED_SPEED = 0.25
+"""A foot is planted where no corner of its sole is faster than this [m/s]."""
+
+_PLANTED_HEIGHT = 0.10  # m above the lowest place of the sole in the motion
+
+
+def quantiles(name: str, values: Array, *shares: int) -> dict[str, float]:
+    """Return quantiles [percent] under names that end in them."""
+    found = np.quantile(values, np.array(shares) / 100.0)
+    return {f"{name}_{share}": float(q) for share, q in zip(shares, found, strict=True)}
+
+
+def in_heading(motion_heading: Array, vectors: Array) -> Array:
+    """Turn world vectors [T, 3] into the frame whose x axis is ahead [T, 3]."""
+    c, s = np.cos(motion_heading), np.sin(motion_heading)
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.stack([c * x + s * y, c * y - s * x, z], axis=-1)
+
+
+def planted(sole: Array, fps: float) -> NDArray[np.bool_]:
+    """Return where a sole [T, C, 3] rests [T]."""
+    speed = np.linalg.norm(np.diff(sole, axis=0), axis=-1).max(axis=1) * fps
+    slow = speed < PLANTED_SPEED
+    rests = np.append(slow, False) & np.append(False, slow)
+    height = sole[..., 2].min(axis=1)
+    return rests & (height < height.min() + _PLANTED_HEIGHT)
+
+
+def worst_window(values: Array, frames: int) -> float:
+    """Return the largest mean over so many frames in a row."""
+    frames = min(frames, len(values))
+    sums = np.cumsum(np.append(0.0, values))
+    return float((sums[frames:] - sums[:-frames]).max() / frames)
+
+
+def log_of(value: float, floor: float) -> float:
+    """Return a logarithm that does not care for values far below a floor."""
+    return float(np.log(value + floor))

@@ -1,0 +1,27 @@
+"""All statistics of a motion."""
+
+from __future__ import annotations
+
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.physics.body_states import BodyStates
+from motiondiffuse_ros.physics.dynamics import Dynamics
+from motiondiffuse_ros.physics.statistics.effort import effort
+from motiondiffuse_ros.physics.statistics.footing import footing
+from motiondiffuse_ros.physics.statistics.posture import posture
+from motiondiffuse_ros.physics.statistics.tempo import tempo
+
+
+def statistics(motion: Motion, states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
+    """Return every statistic by name.
+
+    Args:
+        motion: At 20 fps, five frames or more.
+        states: Of the humanoid that performs it.
+        dynamics: Of those states.
+    """
+    return {
+        **footing(states),
+        **posture(motion, states, dynamics),
+        **effort(states, dynamics),
+        **tempo(motion, states),
+    }
