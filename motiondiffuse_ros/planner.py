@@ -25,6 +25,7 @@ from motiondiffuse_ros.editing import keeps_height, kept_by
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
+from motiondiffuse_ros.execution import EXECUTIONS, NONE, PUBLISH_EXECUTED, execute
 from motiondiffuse_ros.kept import Kept, constraints, path_points
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
@@ -73,6 +74,9 @@ class PlannerConfig:
         control_rate: Rate of the trajectory, Hz.
         accelerations: Whether trajectories have them.
         track: Whether the chosen motion is also judged by simulated tracking.
+        execution: Whether it is also executed without assistance, which takes several times its
+            duration: none, verify (the report says how that ended) or publish_executed (the
+            plan's motion is what was executed, if that came to its end).
         device: Torch device of the denoiser.
     """
 
@@ -89,6 +93,7 @@ class PlannerConfig:
     control_rate: float = 50.0
     accelerations: bool = False
     track: bool = True
+    execution: str = NONE
     device: str = "cpu"
 
     def validate(self) -> None:
@@ -100,6 +105,10 @@ class PlannerConfig:
             )
         if not 1.0 <= self.control_rate <= 1000.0:
             raise RequestError(f"control_rate must be from 1 to 1000 Hz, got {self.control_rate}")
+        if self.execution not in EXECUTIONS:
+            raise RequestError(
+                f"execution must be one of {', '.join(EXECUTIONS)}, got '{self.execution}'"
+            )
 
     def sampler(self, steps: int, guidance_scale: float) -> SamplerConfig:
         """Return the sampler of a request's steps and guidance scale."""
@@ -288,12 +297,12 @@ class Planner:
         watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
         motions = self._sample(request, start, texts, frames, watch)
-        chosen, match, report = self._choose(motions, texts, request, robot, watch)
+        chosen, match, motion, report = self._choose(motions, texts, request, robot, watch)
         trajectory = watch.run(
             "retargeting",
             lambda: build_trajectory(
                 robot,
-                motions[chosen],
+                motion,
                 config.control_rate,
                 start.state,
                 accelerations=config.accelerations,
@@ -307,7 +316,7 @@ class Planner:
             seed=request.seed,
             weights_sha256=self.weights_sha256,
             robot=robot.name,
-            motion=motions[chosen],
+            motion=motion,
             trajectory=trajectory,
             report=report,
             timings_s=watch.timings(),
@@ -383,28 +392,40 @@ class Planner:
         request: MotionRequest,
         robot: Robot,
         watch: _Stages,
-    ) -> tuple[int, float | None, Report]:
-        """Return the best candidate, its match with the texts and its full report."""
+    ) -> tuple[int, float | None, Motion, Report]:
+        """Return the best candidate, its match with the texts, its motion and full report."""
 
-        def judge() -> tuple[int, float | None, Report]:
+        def assessed(motion: Motion) -> Report:
+            return assess(
+                motion,
+                segments=request.segments,
+                robot=robot if robot.is_canonical else None,
+                track=False,
+                cancelled=watch.cancelled,
+            )
+
+        def judge() -> tuple[int, float | None, Motion, Report]:
             matches = self._matches(motions, texts)
             reports: list[Report] = []
             for motion in motions:
-                report = assess(
-                    motion,
-                    segments=request.segments,
-                    robot=robot if robot.is_canonical else None,
-                    track=False,
-                    cancelled=watch.cancelled,
-                )
-                reports.append(report)
+                reports.append(assessed(motion))
+                report = reports[-1]
                 watch.advance("physics", 0.6 * len(reports) / len(motions), report.verdict)
             best = choose(matches, [report.score for report in reports])
-            report = reports[best]
+            motion, report = motions[best], reports[best]
+            if self.config.execution != NONE:
+                motion, report = execute(
+                    motion,
+                    report,
+                    publish=self.config.execution == PUBLISH_EXECUTED,
+                    judge=assessed,
+                    cancelled=watch.cancelled,
+                    progress=lambda share: watch.advance("physics", 0.6 + 0.3 * share),
+                )
             if self.config.track:
-                report = with_tracking(report, motions[best], cancelled=watch.cancelled)
+                report = with_tracking(report, motion, cancelled=watch.cancelled)
             watch.advance("physics", 1.0, report.verdict)
-            return best, matches[best], report
+            return best, matches[best], motion, report
 
         return watch.run("physics", judge)
 

@@ -62,6 +62,8 @@ class Generate:
     """Points of the trajectory a second."""
     track: bool = True
     """Also simulate the motion under a PD controller."""
+    execution: str = "none"
+    """Execute the plan without assistance in simulation: none, verify, or publish_executed."""
     picture: bool = True
     """Also draw motion.gif."""
     out: Path = Path("out")
@@ -88,6 +90,7 @@ def main(arguments: Sequence[str]) -> int:
             steps=request.steps or defaults.steps,
             control_rate=options.rate,
             track=options.track,
+            execution=options.execution,
         )
     )
     console = Console()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
+from motiondiffuse_ros.execution import EXECUTIONS
 from motiondiffuse_ros.planner import PlannerConfig
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import available_robots, robot_refusal
@@ -66,6 +67,13 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "track": ParameterSpec(
         _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
     ),
+    "execution": ParameterSpec(
+        _DEFAULT.execution,
+        "plans are executed without assistance in simulation: not at all, to report how that "
+        "ends, or to publish the executed motion; takes several times their duration",
+        choices=EXECUTIONS,
+        at_configure=True,
+    ),
     "frame_id": ParameterSpec("map", "frame in which the root moves", at_configure=True),
     "continuity": ParameterSpec(
         True, "a plan made while another is executed goes on from that one's motion"
@@ -117,6 +125,7 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         accelerations=parameters["accelerations"],
         device=parameters["device"],
         track=parameters["track"],
+        execution=parameters["execution"],
     )
 
 

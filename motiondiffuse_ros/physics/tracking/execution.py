@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion import CANONICAL, Motion
+from motiondiffuse_ros.motion.bvh import write_bvh
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.hinge_table import hinge_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,14 @@ class Execution:
     contact_forces: Array = field(repr=False)
     seconds: float
 
+    def metrics(self) -> dict[str, float | None]:
+        """Return what a physics report says about it."""
+        return {
+            "execution_success": float(self.success),
+            "execution_time_to_fall_s": self.time_to_fall,
+            "execution_mpjpe_mm": self.mpjpe,
+        }
+
     def to_dict(self) -> dict[str, Any]:
         """Return the figures, for JSON."""
         return {
@@ -55,3 +67,24 @@ class Execution:
             "peak_torque_nm": float(np.abs(self.torques).max()),
             "seconds": self.seconds,
         }
+
+    def save(self, folder: Path) -> None:
+        """Write executed.npz and executed.bvh (the motion), forces.npz and execution.json.
+
+        forces.npz holds `rate` [Hz], `joint_names`, `hinge_names`, `qpos` [N, 70], `torques`
+        [N, 63] N m and `contact_forces` [N, 22, 3] N.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        self.motion.save_npz(folder / "executed.npz")
+        write_bvh(self.motion, folder / "executed.bvh")
+        np.savez_compressed(
+            folder / "forces.npz",
+            rate=self.rate,
+            joint_names=np.array(CANONICAL.names),
+            hinge_names=np.array(hinge_table().names),
+            qpos=self.qpos,
+            torques=self.torques,
+            contact_forces=self.contact_forces,
+        )
+        figures = json.dumps(self.to_dict(), indent=2)
+        (folder / "execution.json").write_text(figures + "\n", encoding="utf-8")
