@@ -44,10 +44,15 @@ class SamplingConfig:
             them and constant after the last, s.
         directions: Random directions of offsets, each simulated forwards and backwards.
         iterations: Rounds of sampling a plan, each around the best of the round before.
+        most_iterations: Rounds where the plan is still bad after that.
+        content: Cost above which a plan is bad.
         spread: Size of the samples in the first round, in units of the offsets' scales; half of
-            it in each further one.
+            it in the next, and so on in turn.
         adaptation: How far the samples' covariance follows the inverse curvature of the cost
             found in the round before, 0 (not at all) to 1.
+        retries: How often the search may go back to an earlier state and try other samples,
+            once the body is lost.
+        lost: Mean distance of the joints from the reference at which it is, m.
         weights: Of the cost.
         seed: Of the directions.
         threads: Of the simulation; None is one a core. They do not change the result.
@@ -58,8 +63,12 @@ class SamplingConfig:
     knots: tuple[float, ...] = (0.1, 0.2, 0.35)
     directions: int = 58
     iterations: int = 2
+    most_iterations: int = 4
+    content: float = 6.0
     spread: float = 0.1
     adaptation: float = 0.0
+    retries: int = 6
+    lost: float = 0.3
     weights: CostWeights = field(default_factory=CostWeights)
     seed: int = 0
     threads: int | None = None
@@ -76,6 +85,15 @@ class SamplingConfig:
         for name in ("directions", "iterations"):
             if getattr(self, name) < 1:
                 raise PhysicsError(f"{name} must be 1 or more, got {getattr(self, name)}")
+        if self.most_iterations < self.iterations or self.retries < 0:
+            raise PhysicsError(
+                "most_iterations must be iterations or more and retries 0 or more, "
+                f"got {self.most_iterations}, {self.retries}"
+            )
+        if not (self.content >= 0.0 and self.lost > 0.0):
+            raise PhysicsError(
+                f"content must be 0 or more and lost above 0 m, got {self.content}, {self.lost}"
+            )
         if not self.spread > 0.0 or not 0.0 <= self.adaptation <= 1.0:
             raise PhysicsError(
                 "spread must be above 0 and adaptation from 0 to 1, "

@@ -22,6 +22,7 @@ from motiondiffuse_ros.physics.tracking.reference import Reference
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
 _SAMPLING_TIME = 0.05  # between two times at which the cost is taken [s]
+_SPREADS = (1.0, 0.5)  # of the rounds in turn, in shares of the configured one
 _LATE = 3  # of them at the end of the horizon count more
 
 
@@ -69,14 +70,17 @@ class Lookahead:
         self._root = np.eye(self._mean.size)
 
     def plan(self, state: Array, step: int) -> None:
-        """Improve the plan by as many rounds as configured, each of half the spread.
+        """Improve the plan by as many rounds as configured, and by more if it stays bad.
 
         Args:
             state: `STATE` of the body [n].
             step: Of the reference, at which it is in this state.
         """
-        for iteration in range(self._config.iterations):
-            self._improve(state, step, self._config.spread * 0.5**iteration)
+        config = self._config
+        for iteration in range(config.most_iterations):
+            cost = self._improve(state, step, config.spread * _SPREADS[iteration % len(_SPREADS)])
+            if iteration + 1 >= config.iterations and cost <= config.content:
+                return
 
     def controls(self, step: int, count: int) -> Array:
         """Return the best plan's controls [count, 63] from a step on."""
@@ -87,7 +91,16 @@ class Lookahead:
         by = steps * self._model.opt.timestep
         self._start, self._mean = self._path.moved_on(self._start, self._mean, by)
 
-    def _improve(self, state: Array, step: int, spread: float) -> None:
+    def saved(self) -> tuple[Array, Array]:
+        """Return the plan, for `restore`."""
+        return self._start, self._mean
+
+    def restore(self, saved: tuple[Array, Array]) -> None:
+        """Go back to an earlier plan; samples will be others."""
+        self._start, self._mean = saved
+
+    def _improve(self, state: Array, step: int, spread: float) -> float:
+        """Sample around the best plan, go to the best that is found, and return its cost."""
         shape, size = self._mean.shape, self._mean.size
         directions = antithetic_directions(self._generator, self._config.directions, size)
         moves = spread * directions @ self._root
@@ -96,10 +109,11 @@ class Lookahead:
         quadratic = self._fit(moves, sampled)
         steps = quadratic.steps().reshape(-1, *shape)
         stepped = self._simulate(state, step, self._mean + steps)
-        self._mean, _ = min(sampled.best(), stepped.best(), key=lambda found: found[1])
+        self._mean, cost = min(sampled.best(), stepped.best(), key=lambda found: found[1])
         share = self._config.adaptation
         if share > 0.0:
             self._root = (1.0 - share) * np.eye(size) + share * quadratic.covariance_root()
+        return cost
 
     def _fit(self, moves: Array, sampled: _Simulated) -> Quadratic:
         times = self._path.times[self._seen]

@@ -13,6 +13,8 @@ from motiondiffuse_ros.physics.tracking.lookahead import STATE
 from motiondiffuse_ros.physics.tracking.model import DIVERGED
 from motiondiffuse_ros.physics.tracking.reference import FALL_DISTANCE, Reference
 
+_WHOLE_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+
 
 @dataclass(eq=False)
 class Record:
@@ -31,6 +33,11 @@ class Record:
     forces: list[Array] = field(default_factory=list)
     errors: list[Array] = field(default_factory=list)
     local_errors: list[Array] = field(default_factory=list)
+
+    def cut(self, samples: int) -> None:
+        """Forget what came after a number of samples."""
+        for series in vars(self).values():
+            del series[samples:]
 
 
 class Plant:
@@ -63,6 +70,25 @@ class Plant:
     def stopped(self) -> bool:
         """Whether the body fell, the simulation broke down or the reference is at its end."""
         return self.fallen or self.diverged or self.step >= len(self._reference) - 1
+
+    @property
+    def error(self) -> float:
+        """Mean distance of the joints from the reference [m]."""
+        return float(self.record.errors[-1].mean())
+
+    def saved(self) -> tuple[int, Array]:
+        """Return all that the simulation goes on from, for `restore`."""
+        state = np.empty(mujoco.mj_stateSize(self._model, _WHOLE_STATE))
+        mujoco.mj_getState(self._model, self._data, state, _WHOLE_STATE)
+        return self.step, state
+
+    def restore(self, saved: tuple[int, Array]) -> None:
+        """Go back to an earlier time, and forget what came after it."""
+        self.step, state = saved
+        mujoco.mj_resetData(self._model, self._data)
+        mujoco.mj_setState(self._model, self._data, state, _WHOLE_STATE)
+        self.record.cut(self.step + 1)
+        self.fallen = self.diverged = False
 
     def execute(self, controls: Array) -> None:
         """Apply controls [n, 63] for a step each, until the end."""

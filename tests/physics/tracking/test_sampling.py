@@ -10,7 +10,15 @@ from motiondiffuse_ros.errors import Cancelled, PhysicsError
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.tracking import SamplingConfig, track_by_sampling
 
-QUICK = SamplingConfig(horizon=0.3, knots=(0.1, 0.2), directions=24, iterations=1, threads=1)
+QUICK = SamplingConfig(
+    horizon=0.3,
+    knots=(0.1, 0.2),
+    directions=24,
+    iterations=1,
+    most_iterations=1,
+    retries=1,
+    threads=1,
+)
 WEIGHT = 70.0 * 9.81
 
 
@@ -75,6 +83,9 @@ def test_what_cannot_be_tracked_is_refused():
         {"directions": 0},
         {"threads": 0},
         {"spread": float("nan")},
+        {"most_iterations": 0},
+        {"retries": -1},
+        {"lost": 0.0},
     ],
 )
 def test_senseless_settings_are_refused(change):
