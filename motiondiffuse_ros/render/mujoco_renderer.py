@@ -54,7 +54,7 @@ def render_qpos(
     shown_fps = min(fps, VIDEO_FPS if video else GIF_FPS)
     count = max(1, round(len(qpos) / fps * shown_fps))
     shown = qpos[np.minimum((np.arange(count) * fps / shown_fps).astype(int), len(qpos) - 1)]
-    frames = _render_frames(model, shown, size)
+    frames = render_states(model, shown, size)
     path.parent.mkdir(parents=True, exist_ok=True)
     if not video:
         return save_gif([Image.fromarray(frame) for frame in frames], path, shown_fps)
@@ -62,7 +62,8 @@ def render_qpos(
     return path
 
 
-def _render_frames(model: mujoco.MjModel, qpos: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+def render_states(model: mujoco.MjModel, qpos: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    """Return pictures [T, height, width, 3] of states [T, nq]; see `render_qpos`."""
     chosen = os.environ.get("MUJOCO_GL")
     failures = []
     with tempfile.TemporaryDirectory() as folder:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Sequence
 
 import mink
-import mujoco
 import numpy as np
 
 from motiondiffuse_ros.errors import Cancelled, RobotError
@@ -15,11 +12,12 @@ from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, LEG_LENGTH
-from motiondiffuse_ros.robots.clearance import DISTANCE, Clearance
+from motiondiffuse_ros.robots.clearance import Clearance
 from motiondiffuse_ros.robots.embodiment import SIDES, Embodiment, embodiment
 from motiondiffuse_ros.robots.foot_paths import FootPath
 from motiondiffuse_ros.robots.joint_box import JointBox
 from motiondiffuse_ros.robots.robot import Robot
+from motiondiffuse_ros.robots.self_collision import self_collision_pairs
 
 SOLVER = "daqp"
 
@@ -148,53 +146,6 @@ def _carried(
     turn = rot.multiply(after[:4], rot.conjugate(before[:4]))
     moved = after[4:] + rot.rotate(turn, position - before[4:])
     return moved, rot.normalise(rot.multiply(turn, orientation))
-
-
-@cache
-def self_collision_pairs(robot: Robot) -> tuple[tuple[int, int], ...]:
-    """Return the pairs of geoms that must not touch.
-
-    Those of different limbs, and of limbs and trunk, without pairs that touch in the T-pose or at
-    rest.
-    """
-    model, sites = robot.model, robot.description.body_map
-    limbs = [
-        _geoms_below(model, model.site(sites[f"{side}_{joint}"]).bodyid[0])
-        for side, joint in itertools.product(SIDES, ("shoulder", "hip"))
-    ]
-    trunk = _geoms_below(model, model.jnt_bodyid[0]) - set().union(*limbs)
-    pairs = {
-        (min(a, b), max(a, b))
-        for one, other in itertools.combinations([trunk, *limbs], 2)
-        for a, b in itertools.product(one, other)
-    }
-    touching = set().union(
-        *(_near(robot, pairs, pose) for pose in (robot.description.t_pose, robot.description.rest))
-    )
-    return tuple(sorted(pairs - touching))
-
-
-def _geoms_below(model: mujoco.MjModel, body: int) -> set[int]:
-    """Return the geoms that collide of a body and all that hang on it."""
-    below = {int(body)}
-    for child in range(int(body) + 1, model.nbody):
-        if int(model.body_parentid[child]) in below:
-            below.add(child)
-    solid = (model.geom_contype | model.geom_conaffinity).astype(bool)
-    return {int(g) for g in np.flatnonzero(solid) if int(model.geom_bodyid[g]) in below}
-
-
-def _near(
-    robot: Robot, pairs: set[tuple[int, int]], pose: Mapping[str, float]
-) -> set[tuple[int, int]]:
-    data = mujoco.MjData(robot.model)
-    data.qpos[7:] = [pose.get(name, 0.0) for name in robot.joint_names]
-    mujoco.mj_kinematics(robot.model, data)
-    return {
-        pair
-        for pair in pairs
-        if mujoco.mj_geomDistance(robot.model, data, *pair, 2 * DISTANCE, None) < DISTANCE
-    }
 
 
 def _targets(

@@ -14,6 +14,9 @@ from motiondiffuse_ros.robots.embodiment import embodiment
 from motiondiffuse_ros.robots.foot_paths import foot_paths
 from motiondiffuse_ros.robots.inverse_kinematics import InverseKinematics
 from motiondiffuse_ros.robots.robot import Robot
+from motiondiffuse_ros.robots.self_collision import overlaps_between
+
+_DENSER = (2, 4)  # times the motion's frames, tried in turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +27,7 @@ class RobotMotion:
         root_position: Of the floating base [T, 3], m.
         root_orientation: Of the floating base [T, 4], wxyz, neighbours on one hemisphere.
         joints: Joint positions [T, J], rad, continuous over time.
-        fps: Frames per second.
+        fps: Frames per second: those of the motion, or a multiple of them.
     """
 
     root_position: Array = field(repr=False)
@@ -43,7 +46,8 @@ def retarget(
 
     The humanoid takes it joint by joint. Other robots get the path scaled by the length of their
     legs, feet that stand where they stand, trunk and limbs in the directions of the skeleton's,
-    as far as their limits and bodies allow; see docs/robots.md.
+    as far as their limits and bodies allow; see docs/robots.md. Where limbs are so fast that they
+    would pass through the body between two frames, there are twice or four times as many.
 
     Args:
         robot: Who moves.
@@ -65,9 +69,12 @@ def retarget(
         )
     if kind != "ik":
         raise RobotError(f"robot '{robot.name}': unknown retargeting '{kind}'; known: exact, ik")
-    feet = foot_paths(motion, embodiment(robot))
-    qpos = InverseKinematics(robot).follow(motion, feet, progress, cancelled)
-    return RobotMotion(qpos[:, :3], rot.continuous(qpos[:, 3:7]), qpos[:, 7:], motion.fps)
+    frames = _followed(robot, motion, progress, cancelled)
+    for denser in _DENSER:
+        if not overlaps_between(robot, frames.joints):
+            break
+        frames = _followed(robot, motion.resample(denser * motion.fps), progress, cancelled)
+    return frames
 
 
 def path_scale(robot: Robot) -> float:
@@ -77,4 +84,16 @@ def path_scale(robot: Robot) -> float:
 
 def to_joint_positions(robot: Robot, motion: Motion) -> Array:
     """Return the robot's joint positions [T, J], rad, for the frames of a motion."""
-    return retarget(robot, motion).joints
+    frames = retarget(robot, motion)
+    return frames.joints[:: round(frames.fps / motion.fps)]
+
+
+def _followed(
+    robot: Robot,
+    motion: Motion,
+    progress: Callable[[float], None] | None,
+    cancelled: Callable[[], bool] | None,
+) -> RobotMotion:
+    feet = foot_paths(motion, embodiment(robot))
+    qpos = InverseKinematics(robot).follow(motion, feet, progress, cancelled)
+    return RobotMotion(qpos[:, :3], rot.continuous(qpos[:, 3:7]), qpos[:, 7:], motion.fps)

@@ -8,6 +8,9 @@ from motiondiffuse_ros.physics.humanoid import _add_scene
 
 
 def add_floor(spec: mujoco.MjSpec) -> None:
-    """Add floor, light and sky to a model without a floor."""
-    if not any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.worldbody.geoms):
-        _add_scene(spec)
+    """Add floor, light and sky to a model without a floor; its own lights would be too many."""
+    if any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.worldbody.geoms):
+        return
+    for light in list(spec.worldbody.lights):
+        spec.delete(light)
+    _add_scene(spec)

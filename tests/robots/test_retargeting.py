@@ -11,7 +11,7 @@ from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.robots import broken_promises, build_trajectory, path_scale, retarget
 from motiondiffuse_ros.robots.embodiment import SIDES, embodiment
-from motiondiffuse_ros.robots.inverse_kinematics import self_collision_pairs
+from motiondiffuse_ros.robots.self_collision import self_collision_pairs
 from motiondiffuse_ros.robots.start_state import StartState
 from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
 
