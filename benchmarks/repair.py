@@ -6,7 +6,7 @@
 Answers a caption of every clip of the test split that lasts two seconds or more with several
 candidates, feet held in the loop of denoising (`planted_below`) or not, and prints phys-err and
 its parts, skating, jerk and R-precision by the shipped evaluator: of the first candidate as it is
-sampled, put on the floor, repaired, and of the best candidate by `Report.score`, repaired.
+sampled, put on the floor, repaired, and of the candidate that the planner would choose, repaired.
 """
 
 from __future__ import annotations
@@ -23,18 +23,20 @@ from rich.progress import track
 from rich.table import Table
 
 from motiondiffuse_ros.corpus.store import Corpus
+from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
-from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
+from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of, shipped_evaluator
 from motiondiffuse_ros.evaluation.items import Item, draw_items
 from motiondiffuse_ros.evaluation.metrics import POOL, pools, retrieval
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.physics.foot_skating import foot_skating
 from motiondiffuse_ros.physics.ground_contact import ground_errors
-from motiondiffuse_ros.physics.repair import put_on_floor, repair
+from motiondiffuse_ros.physics.repair import Repair, put_on_floor, repair
 from motiondiffuse_ros.physics.smoothness import joint_jerk
 from motiondiffuse_ros.planner import shipped_weights
+from motiondiffuse_ros.selection import choose, text_matches
 
 _QUICK_CLIPS, _QUICK_STEPS = 32, 15
 _POOL_DRAWS = 20
@@ -70,6 +72,9 @@ def main(arguments: Arguments) -> None:
     corpus = Corpus.load(arguments.corpus)
     pipeline = MotionPipeline.from_pretrained(arguments.weights or shipped_weights())
     evaluator = Evaluator.from_pretrained(shipped_evaluator(), pipeline.encoder)
+    critic = Evaluator.from_pretrained(
+        critic_of(arguments.weights or shipped_weights()), pipeline.encoder
+    )
     longest = evaluator.network.config.max_frames
     items = draw_items(corpus, corpus.split("test"), longest, rng)
     if arguments.quick:
@@ -86,10 +91,11 @@ def main(arguments: Arguments) -> None:
             [repair(m) for m in motions] for motions in track(sets, description="repairing")
         ]
         rows[f"{name}, repaired"] = [r.motion for r in repaired[0]]
-        rows[f"{name}, repaired, best of {arguments.candidates}"] = [
-            max(choice, key=lambda r: r.after.score).motion
-            for choice in zip(*repaired, strict=True)
+        best = [
+            _best(critic, item.text, choice, corpus.representation)
+            for item, choice in zip(items, zip(*repaired, strict=True), strict=True)
         ]
+        rows[f"{name}, repaired, best of {arguments.candidates}"] = best
     figures = {
         name: _figures(motions, items, evaluator, corpus.representation, arguments.seed)
         for name, motions in rows.items()
@@ -98,6 +104,16 @@ def main(arguments: Arguments) -> None:
     if arguments.json is not None:
         settings = {"clips": len(items), "seed": arguments.seed, "sampler": asdict(default)}
         arguments.json.write_text(json.dumps({"rows": figures, **settings}, indent=1))
+
+
+def _best(
+    critic: Evaluator, text: str, choice: Sequence[Repair], representation: Representation
+) -> Motion:
+    """Choose as the planner does: among those that match the text, the most plausible."""
+    motions = [r.motion for r in choice]
+    whole = TimedText(text, 0, motions[0].frames)
+    matches = text_matches(critic, representation, motions, [whole])
+    return motions[choose(matches, [r.after.score for r in choice])]
 
 
 def _sampled(
@@ -124,7 +140,7 @@ def _sampled(
 def _save(path: Path, motions: Sequence[Motion]) -> None:
     arrays = {f"root_{n}": m.root for n, m in enumerate(motions)}
     arrays |= {f"rotations_{n}": m.rotations for n, m in enumerate(motions)}
-    np.savez(path, fps=motions[0].fps, **arrays)
+    np.savez(path, allow_pickle=False, fps=motions[0].fps, **arrays)
 
 
 def _load(path: Path) -> list[Motion]:

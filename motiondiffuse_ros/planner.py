@@ -31,7 +31,7 @@ from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
-from motiondiffuse_ros.physics.repair import put_on_floor
+from motiondiffuse_ros.physics.repair import put_on_floor, repair
 from motiondiffuse_ros.physics.report import Report, assess, with_tracking
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import (
@@ -73,6 +73,8 @@ class PlannerConfig:
         candidates: Motions to choose from, by match with the texts and by plausibility.
         control_rate: Rate of the trajectory, Hz.
         accelerations: Whether trajectories have them.
+        repair: Whether candidates are repaired where that makes them more plausible; not where
+            they continue, edit or pass what was given.
         track: Whether the chosen motion is also judged by simulated tracking.
         execution: Whether it is also executed without assistance, which takes several times its
             duration: none, verify (the report says how that ended) or publish_executed (the
@@ -92,6 +94,7 @@ class PlannerConfig:
     candidates: int = 4
     control_rate: float = 50.0
     accelerations: bool = False
+    repair: bool = True
     track: bool = True
     execution: str = NONE
     device: str = "cpu"
@@ -297,7 +300,9 @@ class Planner:
         watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
         motions = self._sample(request, start, texts, frames, watch)
-        chosen, match, motion, report = self._choose(motions, texts, request, robot, watch)
+        given = start.lead_in is not None or request.edit is not None or request.waypoints
+        repairs = config.repair and not given
+        chosen, match, motion, report = self._choose(motions, texts, request, robot, watch, repairs)
         trajectory = watch.run(
             "retargeting",
             lambda: build_trajectory(
@@ -392,6 +397,7 @@ class Planner:
         request: MotionRequest,
         robot: Robot,
         watch: _Stages,
+        repairs: bool,
     ) -> tuple[int, float | None, Motion, Report]:
         """Return the best candidate, its match with the texts, its motion and full report."""
 
@@ -406,13 +412,17 @@ class Planner:
 
         def judge() -> tuple[int, float | None, Motion, Report]:
             matches = self._matches(motions, texts)
-            reports: list[Report] = []
+            judged: list[tuple[Motion, Report]] = []
             for motion in motions:
-                reports.append(assessed(motion))
-                report = reports[-1]
-                watch.advance("physics", 0.6 * len(reports) / len(motions), report.verdict)
-            best = choose(matches, [report.score for report in reports])
-            motion, report = motions[best], reports[best]
+                if repairs:
+                    repaired = repair(motion, assessed)
+                    judged.append((repaired.motion, repaired.report))
+                else:
+                    judged.append((motion, assessed(motion)))
+                preview = judged[-1][1].verdict
+                watch.advance("physics", 0.6 * len(judged) / len(motions), preview)
+            best = choose(matches, [report.score for _, report in judged])
+            motion, report = judged[best]
             if self.config.execution != NONE:
                 motion, report = execute(
                     motion,

@@ -53,7 +53,7 @@ def balance(centre: Array, places: Array, touching: NDArray[np.bool_], fps: floa
     velocity = np.gradient(centre[:, :2], 1.0 / fps, axis=0)
     height = np.maximum(centre[:, 2:], _LOWEST_CENTRE)
     capture = centre[:, :2] + velocity * np.sqrt(height / _GRAVITY)
-    used = touching.any(axis=0)
+    used = np.flatnonzero(touching.any(axis=0))
     reach = places[:, used, :2] @ _DIRECTIONS.T
     support = np.max(reach, axis=1, where=touching[:, used, None], initial=-np.inf)
     window = 2 * round(STEP * fps) + 1
@@ -63,5 +63,5 @@ def balance(centre: Array, places: Array, touching: NDArray[np.bool_], fps: floa
 
 
 def _outside(own: Array, support: Array) -> Array:
-    known = np.isfinite(support).all(axis=1)
+    known = np.isfinite(support.sum(axis=1))
     return np.where(known, np.max(own - np.where(known[:, None], support, 0.0), axis=1), np.nan)

@@ -52,6 +52,11 @@ class Criterion:
         defined = values[~np.isnan(values)]
         return float(self.statistic(defined)) if len(defined) else 0.0
 
+    def lasting(self, measures: Mapping[str, Series]) -> int:
+        """Return the frames of the longest span in which the shown series is too large."""
+        values = np.nan_to_num(measures[self.shown].values)
+        return max((b - a for a, b in _spans(values > self.span_above)), default=0)
+
     def reason(self, measures: Mapping[str, Series], start: float) -> str:
         """Say what is wrong, how much and when.
 

@@ -88,7 +88,7 @@ def state_dynamics(states: BodyStates) -> Dynamics:
         torques=torques,
         power=torques * qvel[:, _ROOT:],
         centre=centre,
-        supported=touching.any(axis=1),
+        supported=np.any(touching, axis=1),
     )
 
 

@@ -100,8 +100,13 @@ class FittedScore:
     def from_dict(cls, data: Mapping[str, Any]) -> FittedScore:
         """Undo `to_dict`."""
         arrays = {name: np.array(data[name]) for name in ("centre", "spread", "knots", "weights")}
-        plain = {n: float(data[n]) for n in ("bias", "implausible_below", "marginal_below")}
-        return cls(names=tuple(data["names"]), **arrays, **plain)
+        return cls(
+            names=tuple(data["names"]),
+            **arrays,
+            bias=float(data["bias"]),
+            implausible_below=float(data["implausible_below"]),
+            marginal_below=float(data["marginal_below"]),
+        )
 
 
 @cache

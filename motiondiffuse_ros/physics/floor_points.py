@@ -31,4 +31,4 @@ class FloorPoints:
 
         Central differences look that far.
         """
-        return maximum_filter1d(self.places[..., 2] < CONTACT_HEIGHT, 3, axis=0)
+        return np.asarray(maximum_filter1d(self.places[..., 2] < CONTACT_HEIGHT, 3, axis=0), bool)

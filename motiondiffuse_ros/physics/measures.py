@@ -59,7 +59,7 @@ def measure(states: BodyStates, dynamics: Dynamics) -> dict[str, Series]:
     """
     frames, limits = len(states.qpos), states.limits
     heights = states.points.places[..., 2]
-    lowest = [states.point_names[p] for p in heights.argmin(axis=1)]
+    lowest = [states.point_names[int(p)] for p in heights.argmin(axis=1)]
     ground = ground_errors_of(heights.min(axis=1), np.concatenate(states.soles, axis=1))
     skating = skating_of(states.feet, states.soles, states.fps)
     skates = np.where(skating.low.any(axis=1), skating.skating.any(axis=1), np.nan)

@@ -22,6 +22,7 @@ from motiondiffuse_ros.physics.statistics import statistics
 from motiondiffuse_ros.physics.tracking import track
 
 _STATISTICS_NAMED = 2
+_PASSING_FRAMES = 5
 _ASSESSED = 0.2  # share of the work that is done before the simulation
 
 PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
@@ -85,6 +86,7 @@ class Report:
         score: 0 to 1, higher is more plausible; continuous, for choosing among candidates.
         metrics: `METRICS` and more, None where not computed.
         segments: The same for each segment of the request.
+        before_repair: Metrics of the motion before it was repaired; None if it was not.
         series: Every measure frame by frame at 20 Hz (`measures.measure`).
     """
 
@@ -93,6 +95,7 @@ class Report:
     score: float
     metrics: dict[str, float | None] = field(repr=False)
     segments: tuple[SegmentReport, ...] = ()
+    before_repair: dict[str, float | None] | None = field(default=None, repr=False)
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)
 
     def to_dict(self) -> dict[str, Any]:
@@ -107,7 +110,7 @@ class Report:
         """Write the series as NPZ: `time` [s], and each measure by name, NaN where undefined."""
         frames = max((len(s.values) for s in self.series.values()), default=0)
         arrays = {name: series.values for name, series in self.series.items()}
-        np.savez_compressed(path, time=np.arange(frames) / RATE, **arrays)
+        np.savez_compressed(path, allow_pickle=False, time=np.arange(frames) / RATE, **arrays)
 
 
 def assess(
@@ -184,7 +187,8 @@ def with_fitted_score(report: Report, figures: Mapping[str, float], seconds: flo
     verdict, reasons = report.verdict, report.reasons
     if likely < model.marginal_below:
         told = model.worst(figures, _STATISTICS_NAMED)
-        reasons = (*reasons, *(f"{words} at 0.0-{seconds:.1f} s" for words in told))
+        statistical = (f"{words} at 0.0-{seconds:.1f} s" for words in told)
+        reasons = (*(reasons or _passing_faults(report.series)), *statistical)
         harsh = likely < model.implausible_below or verdict == IMPLAUSIBLE
         verdict = IMPLAUSIBLE if harsh else MARGINAL
     score = _joined(report.score, likely)
@@ -280,6 +284,13 @@ def _score(values: Mapping[str, float]) -> float:
     """
     shares = np.array([values[c.name] / c.implausible for c in CRITERIA])
     return float(1.0 / (1.0 + np.sqrt(np.sum(shares**4))))
+
+
+def _passing_faults(measures: Mapping[str, Series]) -> tuple[str, ...]:
+    """Return reasons for what is wrong for a while and goes under in a whole motion's means."""
+    found = [(c.lasting(measures), c) for c in CRITERIA]
+    reasons = {c.words: c.reason(measures, 0.0) for n, c in found if n >= _PASSING_FRAMES}
+    return tuple(reasons.values())
 
 
 def _joined(by_criteria: float, fitted: float) -> float:

@@ -46,7 +46,7 @@ _ROWS = (
     _Row("residual_torque", "out of balance, weights m", 0.3),
     _Row("next_step", "beyond next step, mm", 200.0),
     _Row("torque_excess", "torque over limit, N m", 100.0),
-    _Row("jerk", "jerk, m/s³", 2000.0),
+    _Row("jerk", "jerk, m/s^3", 2000.0),
 )
 _MARKS = {c.shown: c.span_above for c in reversed(CRITERIA)}
 

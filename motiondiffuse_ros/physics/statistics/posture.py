@@ -37,7 +37,7 @@ def _soles(motion: Motion, states: BodyStates, heading: Array) -> dict[str, floa
         for side, sole, rest in zip(SIDES, states.soles, rests, strict=True)
     ]
     known = [foot for foot in feet if foot is not None]
-    out = dict.fromkeys(
+    out: dict[str, float] = dict.fromkeys(
         ("sole_pitch", "sole_roll", "sole_tilt", "sole_unevenness", "planted_height"), 0.0
     )
     if known:
@@ -51,9 +51,12 @@ def _soles(motion: Motion, states: BodyStates, heading: Array) -> dict[str, floa
         }
     left, right = feet
     if left is None or right is None:
-        pair = {"toe_out": _USUAL_TOE_OUT} | dict.fromkeys(
-            ("feet_height_difference", "sole_roll_difference", "sole_pitch_difference"), 0.0
-        )
+        pair = {
+            "toe_out": _USUAL_TOE_OUT,
+            "feet_height_difference": 0.0,
+            "sole_roll_difference": 0.0,
+            "sole_pitch_difference": 0.0,
+        }
         turned = 0.0
     else:
         pair = {

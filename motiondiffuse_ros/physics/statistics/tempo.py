@@ -7,6 +7,7 @@ jerk to acceleration are frequencies, and bodies of one size have theirs.
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
@@ -26,6 +27,7 @@ _HINGES = {
     "legs": ("hip", "knee", "ankle"),
     "trunk": ("spine", "head", "neck"),
 }
+_AFTER = 6  # frames
 _BANDS = ((1.0, 2.0), (2.0, 4.0), (4.0, 7.0), (7.0, 10.1))  # Hz
 
 
@@ -69,10 +71,17 @@ def _whole_body(motion: Motion) -> dict[str, float]:
     jerk = np.linalg.norm(np.diff(steps, n=2, axis=0), axis=-1).max(axis=1) * motion.fps**3
     speed = np.linalg.norm(steps, axis=-1).mean(axis=1) * motion.fps
     change = np.abs(np.diff(speed)) * motion.fps
+    # how much slower the body is at once, for the next frames, than just before
+    after = sliding_window_view(np.append(speed, np.repeat(speed[-1], _AFTER)), _AFTER).mean(axis=1)
+    stops = np.log((speed[:-1] + 0.02) / (after[1:-1] + 0.02))
+    starts = np.log((after[1:-1] + 0.02) / (speed[:-1] + 0.02))
     return {
         "jerk_50": log_of(float(np.median(jerk)), 20.0),
         "jerk_90": log_of(_upper(jerk), 20.0),
         "jerk_100": log_of(float(jerk.max()), 20.0),
+        "sudden_stop": float(stops.max()),
+        "sudden_start": float(starts.max()),
+        "stillest_frame": log_of(float(speed.min()), 0.005),
         "change_of_speed_100": float(change.max()),
         "change_of_speed_peak_over_usual": float(
             np.log((change.max() + 0.5) / (_upper(change) + 0.5))
