@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 
+_SAME = 1e-9  # two times no further apart are one [s]
+
 # hinges that balance needs, and the size of a large correction of each [rad]
 _CORRECTED = {
     "left_hip_x": 0.4,
@@ -61,7 +63,7 @@ class OffsetPath:
 
     def knots_before(self, time: float) -> int:
         """Return how many of the knots can have an effect at a time [s]."""
-        return int(np.sum(np.concatenate([[0.0], self.knots[:-1]]) < time - 1e-9))
+        return int(np.sum(np.concatenate([[0.0], self.knots[:-1]]) < time - _SAME))
 
     def moved_on(self, start: Array, values: Array, by: float) -> tuple[Array, Array]:
         """Return the start and the knots of the same path for a horizon that begins later [s]."""
@@ -69,7 +71,7 @@ class OffsetPath:
         at = np.concatenate([[0.0], self.knots]) + by
         moved = _hats((0.0, *self.knots), at) @ path
         # what the old horizon did not reach fades towards no offset
-        moved[at > self.knots[-1]] *= 0.7
+        moved[at > self.knots[-1] + _SAME] *= 0.7
         return moved[0], moved[1:]
 
 
