@@ -30,8 +30,7 @@ PLAUSIBLE, MARGINAL, IMPLAUSIBLE = "plausible", "marginal", "implausible"
 METRICS = (
     *("penetrate_mm", "float_mm", "skate_mm", "phys_err_mm", "skating_ratio"),
     *("contact_skating_ratio", "joint_limit_violation", "joint_velocity_violation", "peak_jerk"),
-    *("root_residual_force_bw", "root_residual_torque", "torque_violation", "peak_power_w"),
-    *("off_support_mm", "off_next_step_mm", "self_collision"),
+    *("root_residual_force_bw", "root_residual_torque", "torque_violation"),
     *("time_to_fall_s", "tracking_mpjpe_mm"),
 )
 """The keys that every report has, null where not computed. docs/physics.md defines each."""
