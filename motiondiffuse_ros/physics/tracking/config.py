@@ -23,14 +23,14 @@ class CostWeights:
         offset: Offsets of the controller's targets, per unit of their scale.
     """
 
-    joints: float = 0.21
-    feet: float = 0.43
+    joints: float = 0.4
+    feet: float = 0.6
     centre: float = 6.0
     velocity: float = 2.0
-    momentum: float = 0.03
-    orientation: float = 1.0
+    momentum: float = 0.08
+    orientation: float = 5.0
     late: float = 2.0
-    offset: float = 0.14
+    offset: float = 0.3
 
 
 @dataclass(frozen=True)
