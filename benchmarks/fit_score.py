@@ -54,7 +54,7 @@ class Arguments:
     """Of each clip."""
     penalty: float = 0.002
     """On the squared weights."""
-    passing: float = 0.98
+    passing: float = 0.97
     """Share of real clips, held out, that the score alone does not call implausible."""
     plausible: float = 0.9
     """Share of real clips, held out, that the score alone calls plausible."""
