@@ -20,7 +20,7 @@ def test_the_list_holds_what_was_agreed():
 
 
 def test_errors_are_of_what_succeeds():
-    common = {"pd_success": False, "time_to_fall_s": 2.0, "seconds": 10.0}
+    common = {"pd_success": False, "time_to_fall_s": 2.0, "seconds": 10.0, "core_seconds": 16.0}
     found = figures(
         [
             {"success": True, "mpjpe_mm": 50.0, **common},
@@ -30,3 +30,4 @@ def test_errors_are_of_what_succeeds():
     assert found["success"] == 0.5
     assert found["mpjpe_mm"] == 50.0
     assert found["times_real_time"] == 5.0
+    assert found["core_times_real_time"] == 8.0
