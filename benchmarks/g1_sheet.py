@@ -28,6 +28,8 @@ from motiondiffuse_ros.robots import get_robot
 
 COLUMNS = 8
 
+_ZOOM = 1.6  # robots are smaller than the skeleton
+
 
 @dataclass(frozen=True)
 class Options:
@@ -92,8 +94,11 @@ def _robot(plan: Plan, width: int, height: int) -> Image.Image:
     qpos: Array = states(plan.trajectory)
     shown = qpos[np.linspace(0, len(qpos) - 1, COLUMNS).round().astype(int)]
     shown[:, :2] = 0.0
-    pictures = render_states(get_robot(plan.robot).model, shown, (width, height))
-    return Image.fromarray(np.concatenate(list(pictures), axis=1))
+    size = round(_ZOOM * width), round(_ZOOM * height)
+    pictures = render_states(get_robot(plan.robot).model, shown, size)
+    left, top = (size[0] - width) // 2, round(0.96 * (size[1] - height))
+    cut = pictures[:, top : top + height, left : left + width]
+    return Image.fromarray(np.concatenate(list(cut), axis=1))
 
 
 if __name__ == "__main__":

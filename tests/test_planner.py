@@ -232,3 +232,26 @@ def test_edits_that_do_not_fit_are_refused_before_any_work(planner, saved):
         edited(planner, Edit(file, ("head",)), 5.0)
     with pytest.raises(MotionFileError, match="no such file"):
         edited(planner, Edit("none.npz", ("head",)))
+
+
+def test_a_plan_for_another_robot_is_that_robots(planner, g1, tmp_path):
+    request = MotionRequest.from_text("a person walks forward", 2.0, seed=3, robot="g1")
+    plan = planner.plan(request)
+    assert plan.trajectory.joint_names == g1.joint_names
+    assert broken_promises(plan.trajectory, g1) == ()
+    plan.save(tmp_path)
+    rows = np.loadtxt(tmp_path / "tracking.csv", delimiter=",")
+    assert rows.shape == (len(plan.trajectory.times), 7 + 29)
+    assert (tmp_path / "tracking.npz").is_file()
+
+    # taken up later, from where the robot has got to
+    state = TrajectoryState(plan.trajectory).at(1.0)
+    assert state.root is not None
+    again = planner.restarted(plan, state)
+    assert broken_promises(again.trajectory, g1) == ()
+    np.testing.assert_allclose(again.trajectory.root_position[0], state.root.position, atol=1e-9)
+    walked = again.trajectory.root_position[-1] - again.trajectory.root_position[0]
+    # the motion sets out from there too: the base is not dragged across the floor
+    assert np.linalg.norm(walked[:2]) < 1.5 * np.linalg.norm(
+        (plan.trajectory.root_position[-1] - plan.trajectory.root_position[0])[:2]
+    )

@@ -52,7 +52,7 @@ def retarget(
     Args:
         robot: Who moves.
         motion: Finite, at any rate.
-        progress: Told the share done, 0 to 1.
+        progress: Told the share done, 0 to 1; that of the first attempt where more are needed.
         cancelled: Asked before every frame that takes work.
 
     Raises:
@@ -73,7 +73,7 @@ def retarget(
     for denser in _DENSER:
         if not overlaps_between(robot, frames.joints):
             break
-        frames = _followed(robot, motion.resample(denser * motion.fps), progress, cancelled)
+        frames = _followed(robot, motion.resample(denser * motion.fps), None, cancelled)
     return frames
 
 

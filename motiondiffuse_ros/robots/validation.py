@@ -30,6 +30,8 @@ def broken_promises(trajectory: JointTrajectory, robot: Robot) -> tuple[str, ...
         "root_linear_velocity": (n, 3),
         "root_angular_velocity": (n, 3),
     }
+    if trajectory.accelerations is not None:
+        shapes["accelerations"] = (n, j)
     values = {name: getattr(trajectory, name) for name in shapes}
     wrong = [
         f"{name} has shape {values[name].shape}, not {shape}"

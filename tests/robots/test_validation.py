@@ -23,6 +23,7 @@ def _changed(name, index, value):
     [
         (replace(GOOD, joint_names=GOOD.joint_names[::-1]), "joint names"),
         (replace(GOOD, positions=GOOD.positions[:-1]), "shape"),
+        (replace(GOOD, accelerations=GOOD.positions[:-1]), "shape"),
         (_changed("positions", (3, 4), np.nan), "not finite"),
         (_changed("times", 0, 0.01), "strictly"),
         (_changed("times", 5, GOOD.times[4]), "strictly"),

@@ -96,6 +96,18 @@ def test_a_trajectory_survives_the_wire():
         assert np.array_equal(getattr(back, name), getattr(trajectory, name)), name
 
 
+def test_accelerations_go_along_where_they_were_asked_for():
+    robot = get_robot("humanoid")
+    plain = build_trajectory(robot, waving(20))
+    assert not joint_trajectory_to_message(plain, Header()).points[3].accelerations
+    full = build_trajectory(robot, waving(20), accelerations=True)
+    assert full.accelerations is not None
+    point = joint_trajectory_to_message(full, Header()).points[3]
+    assert np.array_equal(point.accelerations, full.accelerations[3])
+    change = (full.velocities[4] - full.velocities[2]) * 25.0
+    assert np.allclose(point.accelerations, change)
+
+
 def messages() -> tuple[Any, Any]:
     trajectory = build_trajectory(get_robot("humanoid"), waving(40))
     return (

@@ -110,3 +110,11 @@ def test_a_file_of_something_else_is_refused(tmp_path):
     path.write_bytes(b"not an archive")
     with pytest.raises(MotionFileError, match="not an executed motion"):
         ExecutedMotion.load_npz(path)
+
+
+def test_a_real_robot_follows_with_its_own_actuators(g1):
+    executed = run(SimulatedRobot(g1), build_trajectory(g1, waving(30)))
+    assert executed.robot == "g1"
+    assert executed.qpos.shape[1] == 7 + 29
+    assert executed.joint_error < 0.05
+    assert executed.root_error < 0.03
