@@ -96,7 +96,7 @@ def _robot(plan: Plan, width: int, height: int) -> Image.Image:
     shown[:, :2] = 0.0
     size = round(_ZOOM * width), round(_ZOOM * height)
     pictures = render_states(get_robot(plan.robot).model, shown, size)
-    left, top = (size[0] - width) // 2, round(0.96 * (size[1] - height))
+    left, top = (size[0] - width) // 2, round(0.55 * (size[1] - height))
     cut = pictures[:, top : top + height, left : left + width]
     return Image.fromarray(np.concatenate(list(cut), axis=1))
 
