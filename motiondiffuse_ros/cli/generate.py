@@ -50,7 +50,7 @@ class Generate:
     """Denoising steps."""
     guidance_scale: float | None = None
     """Weight of the text; 1 is none."""
-    scheduler: str = "ddim"
+    scheduler: str = "dpm-solver++"
     """ddim, ddpm or dpm-solver++."""
     robot: str | None = None
     """Robot to retarget to: humanoid, g1, or a description file (docs/robots.md)."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from diffusers.schedulers.scheduling_ddim import DDIMScheduler
 from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
 from diffusers.schedulers.scheduling_dpmsolver_multistep import DPMSolverMultistepScheduler
 from torch import Tensor
@@ -14,7 +13,7 @@ from motiondiffuse_ros.errors import RequestError
 
 SCHEDULERS = ("ddim", "ddpm", "dpm-solver++")
 
-Scheduler = DDIMScheduler | DDPMScheduler | DPMSolverMultistepScheduler
+Scheduler = DDPMScheduler | DPMSolverMultistepScheduler
 
 
 def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
@@ -33,16 +32,36 @@ def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
         "beta_start": config.beta_start,
         "beta_end": config.beta_end,
         "prediction_type": config.prediction_type,
-        "timestep_spacing": "trailing",
     }
     # features are normalised, not bounded: samples are never clipped
-    if name == "ddim":
-        return DDIMScheduler(**common, clip_sample=False)
     if name == "ddpm":
         return DDPMScheduler(**common, clip_sample=False)
-    if name == "dpm-solver++":
-        return DPMSolverMultistepScheduler(**common, algorithm_type="dpmsolver++")
+    if name in ("ddim", "dpm-solver++"):
+        # of the first order it is DDIM (Lu et al. 2022), with steps at any times
+        order = 1 if name == "ddim" else 2
+        return DPMSolverMultistepScheduler(
+            **common, algorithm_type="dpmsolver++", solver_order=order
+        )
     raise RequestError(f"unknown scheduler '{name}'; the schedulers are {', '.join(SCHEDULERS)}")
+
+
+def denoising_steps(count: int, spacing: float, train_steps: int) -> list[int]:
+    """Return the training steps at which to denoise, from the noisiest to less noise.
+
+    A text decides what a motion does while there is almost nothing but noise (docs/training.md), so
+    that steps at even distances are too few there and too many where details are left.
+
+    Args:
+        count: How many, at most `train_steps`.
+        spacing: The i-th of n is at 1 - (i / n) ** spacing of the training steps; 1 is even.
+        train_steps: Of the denoiser.
+    """
+    steps: list[int] = []
+    for i in range(count):
+        step = round(train_steps * (1.0 - (i / count) ** spacing)) - 1
+        before = steps[-1] if steps else train_steps
+        steps.append(max(min(step, before - 1), count - 1 - i))
+    return steps
 
 
 def to_clean(kind: str, output: Tensor, noisy: Tensor, alpha: Tensor) -> Tensor:

@@ -14,11 +14,17 @@ from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.precision import check_precision, use_bf16
-from motiondiffuse_ros.diffusion.process import SCHEDULERS, from_clean, make_scheduler, to_clean
+from motiondiffuse_ros.diffusion.process import (
+    SCHEDULERS,
+    denoising_steps,
+    from_clean,
+    make_scheduler,
+    to_clean,
+)
 from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
-_FRACTIONS = ("part_correction", "time_correction", "apart_above", "planted_below", "eta")
+_FRACTIONS = ("part_correction", "time_correction", "apart_above", "planted_below")
 
 
 @dataclass(frozen=True)
@@ -28,6 +34,7 @@ class SamplerConfig:
     Attributes:
         scheduler: One of `SCHEDULERS`.
         steps: Denoising steps.
+        spacing: How much denser they are where there is more noise; see `denoising_steps`.
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
         guidance_interval: Noise levels, as part of the training steps, between which guidance is
             used (Kynkäänniemi et al. 2024); the conditional model alone does the rest.
@@ -38,19 +45,18 @@ class SamplerConfig:
             parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
         planted_below: Noise level, as part of the training steps, below which feet in contact hold
             the root (`motion.planted_feet`); 0 is never.
-        eta: Noise re-injected by DDIM, 0 to 1.
         precision: Arithmetic of the denoiser, one of `PRECISIONS`.
     """
 
-    scheduler: str = "ddim"
-    steps: int = 30
-    guidance_scale: float = 2.0
-    guidance_interval: tuple[float, float] = (0.0, 1.0)
+    scheduler: str = "dpm-solver++"
+    steps: int = 24
+    spacing: float = 2.0
+    guidance_scale: float = 2.5
+    guidance_interval: tuple[float, float] = (0.6, 1.0)
     part_correction: float = 0.0
     time_correction: float = 0.5
     apart_above: float = 0.25
-    planted_below: float = 0.3
-    eta: float = 0.0
+    planted_below: float = 0.5
     precision: str = "auto"
 
     def validate(self) -> None:
@@ -62,6 +68,8 @@ class SamplerConfig:
         check_precision(self.precision)
         if not 1 <= self.steps <= 1000:
             raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
+        if not 1.0 <= self.spacing <= 5.0:
+            raise RequestError(f"spacing must be from 1 to 5, got {self.spacing}")
         for name in _FRACTIONS:
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise RequestError(f"{name} must be from 0 to 1, got {getattr(self, name)}")
@@ -189,9 +197,9 @@ def _denoise(
 ) -> Tensor:
     late = constraints if planted is None else (planted, *constraints)
     scheduler = make_scheduler(config.scheduler, denoiser.config)
-    scheduler.set_timesteps(config.steps)
+    times = denoising_steps(config.steps, config.spacing, denoiser.config.train_steps)
+    scheduler.set_timesteps(timesteps=times)
     x = x.to(denoiser.device)  # drawn on the CPU: a seed means the same on every device
-    extra = {"eta": config.eta} if config.scheduler == "ddim" else {}
     total = len(scheduler.timesteps)
     for done, step in enumerate(scheduler.timesteps):
         if cancelled is not None and cancelled():
@@ -203,7 +211,7 @@ def _denoise(
             kind = denoiser.config.prediction_type
             clean = apply(imposed, to_clean(kind, output, x, alpha))
             output = from_clean(kind, clean, x, alpha)
-        x = scheduler.step(output, step, x, generator=generator, **extra).prev_sample  # type: ignore[arg-type, union-attr]
+        x = scheduler.step(output, step, x, generator=generator).prev_sample  # type: ignore[arg-type, union-attr]
         if on_step is not None:
             on_step(done + 1, total)
     x = apply(late if config.planted_below > 0.0 else constraints, x)

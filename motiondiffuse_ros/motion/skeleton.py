@@ -124,6 +124,9 @@ CANONICAL = _canonical()
 ANKLE_HEIGHT = 0.08
 TOE_HEIGHT = 0.02
 
+HEEL_BEHIND_ANKLE = 0.06
+"""The sole's rear edge behind the ankle [m]."""
+
 LEG_LENGTH = 0.81
 """Hip to ankle along the bones [m]: what a root translation is scaled by at import."""
 

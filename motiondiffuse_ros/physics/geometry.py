@@ -15,12 +15,9 @@ import numpy as np
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, TOE_HEIGHT
+from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, HEEL_BEHIND_ANKLE, TOE_HEIGHT
 
 _Point = tuple[float, float, float]
-
-HEEL_BEHIND_ANKLE = 0.06
-"""The sole's rear edge behind the ankle [m]."""
 
 _HALF_SOLE = 0.042
 # shorter than a person's: mocap toes bend little, and longer ones dip into the floor at push-off

@@ -14,7 +14,7 @@ from motiondiffuse_ros.motion.features import PoseState
 
 STATE = PoseState()
 FRAMES = 60
-CONFIG = SamplerConfig(steps=4, guidance_scale=1.0, precision="fp32")
+CONFIG = SamplerConfig(steps=4, spacing=1.0, guidance_scale=1.0, precision="fp32")
 ON_PARTS = (
     TimedText("walk", 0, FRAMES),
     TimedText("wave", 0, FRAMES, ("right_arm",)),

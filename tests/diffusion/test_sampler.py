@@ -84,12 +84,14 @@ def test_values_that_are_not_finite_are_an_error(denoiser):
 
 
 def test_guidance_is_used_at_its_noise_levels_only(denoiser):
-    unguided = _sample(denoiser, guidance_scale=1.0)
-    # four steps are at 0.25, 0.5, 0.75 and 1 of the noise
-    unused = _sample(denoiser, guidance_scale=4.0, guidance_interval=(0.0, 0.2))
-    assert torch.equal(unused, unguided)
-    partly = _sample(denoiser, guidance_scale=4.0, guidance_interval=(0.4, 0.6))
-    wholly = _sample(denoiser, guidance_scale=4.0)
+    def guided(low, high):
+        # four steps are at 0.25, 0.5, 0.75 and 1 of the noise
+        interval = (low, high)
+        return _sample(denoiser, spacing=1.0, guidance_scale=4.0, guidance_interval=interval)
+
+    unguided = _sample(denoiser, spacing=1.0, guidance_scale=1.0)
+    assert torch.equal(guided(0.0, 0.2), unguided)
+    partly, wholly = guided(0.4, 0.6), guided(0.0, 1.0)
     assert not torch.allclose(partly, unguided, atol=1e-3)
     assert not torch.allclose(partly, wholly, atol=1e-3)
 

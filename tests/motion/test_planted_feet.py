@@ -8,7 +8,8 @@ from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.planted_feet import PlantedFeet
 
 STATE = PoseState()
-PLANAR = STATE.groups()["root_velocity"]
+GROUPS = STATE.groups()
+PLANAR, HEIGHT = GROUPS["root_velocity"], GROUPS["root_height"]
 
 
 def _planted(features):
@@ -36,18 +37,35 @@ def test_feet_in_the_air_hold_nothing():
     np.testing.assert_allclose(_planted(flying), flying, atol=1e-6)
 
 
-def test_poses_stay_and_velocities_follow_the_root(real_paths):
+def test_a_body_that_hovers_or_sinks_is_put_on_its_soles():
+    still = standing(40)
+    on_floor = STATE.encode(still)
+    for height in (0.04, -0.04):
+        away = STATE.encode(moved(still, np.tile([0.0, 0.0, height], (40, 1))))
+        away[:, GROUPS["contacts"]] = on_floor[:, GROUPS["contacts"]]
+        back = _planted(away)
+        np.testing.assert_allclose(back[:, HEIGHT], on_floor[:, HEIGHT], atol=0.003)
+        np.testing.assert_allclose(
+            back[:, GROUPS["positions"]], on_floor[:, GROUPS["positions"]], atol=0.003
+        )
+
+
+def test_poses_stay_and_all_joints_follow_the_root(real_paths):
     features = _clip(real_paths, "02_01")
     features[:, PLANAR] += [0.1, 0.2]
-    planted, groups = _planted(features), STATE.groups()
-    for name in ("yaw_velocity", "root_height", "positions", "rotations", "contacts"):
-        np.testing.assert_array_equal(planted[:, groups[name]], features[:, groups[name]])
-    change = planted[:, PLANAR] - features[:, PLANAR]
-    joints = (planted - features)[:, groups["velocities"]].reshape(len(features), -1, 3)
+    planted = _planted(features)
+    for name in ("yaw_velocity", "rotations", "contacts"):
+        np.testing.assert_array_equal(planted[:, GROUPS[name]], features[:, GROUPS[name]])
+    change = planted - features
+    places = change[:, GROUPS["positions"]].reshape(len(features), -1, 3)
+    np.testing.assert_allclose(places[:, :, [0, 2]], 0.0, atol=1e-6)
+    np.testing.assert_allclose(places[:, :, 1], np.tile(change[:, HEIGHT], (1, 21)), atol=1e-5)
+    speeds = change[:, GROUPS["velocities"]].reshape(len(features), -1, 3)
     np.testing.assert_allclose(
-        joints[:, :, [0, 2]], np.tile(change[:, None], (1, 22, 1)), atol=1e-5
+        speeds[:, :, [0, 2]], np.tile(change[:, None, PLANAR], (1, 22, 1)), atol=1e-5
     )
-    np.testing.assert_allclose(joints[:, :, 1], 0.0, atol=1e-6)
+    rise = np.diff(change[:, HEIGHT], axis=0) * 20.0
+    np.testing.assert_allclose(speeds[:-1, :, 1], np.tile(rise, (1, 22)), atol=1e-4)
 
 
 def test_a_single_frame_is_left_alone():
