@@ -54,8 +54,6 @@ class Arguments:
     """Of each clip."""
     penalty: float = 0.002
     """On the squared weights."""
-    passing: float = 0.97
-    """Share of real clips, held out, that the score alone does not call implausible."""
     plausible: float = 0.9
     """Share of real clips, held out, that the score alone calls plausible."""
     seed: int = 1
@@ -82,7 +80,6 @@ def main(arguments: Arguments) -> None:
     real = scores[samples.kinds == REAL]
     model = replace(
         model,
-        implausible_below=float(np.quantile(real, 1.0 - arguments.passing)),
         marginal_below=float(np.quantile(real, 1.0 - arguments.plausible)),
     )
     for kind in CORRUPTIONS:
@@ -165,7 +162,6 @@ def _fitted(samples: Samples, penalty: float) -> FittedScore:
         knots=np.quantile(real, KNOTS, axis=0),
         weights=np.zeros((len(KNOTS) + 1, count)),
         bias=0.0,
-        implausible_below=0.0,
         marginal_below=0.0,
     )
     basis = empty.basis(samples.values).reshape(len(samples.values), -1)

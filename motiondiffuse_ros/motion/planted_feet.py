@@ -29,6 +29,10 @@ _SLIDE_FRAMES, _HEIGHT_FRAMES = 1.0, 3.0
 """Standard deviation of the smoothing over time: poses jitter while they are denoised, and the root
 must not; nor may it jump where a contact begins."""
 
+_DRIFT_FRAMES = 10.0
+"""What is slower than this goes on sideways: feet drag in sampled sidesteps, and a body that they
+hold stays where it is."""
+
 _FLAT = CANONICAL.offsets[CANONICAL.index("left_foot")]
 _FLAT_PITCH = math.atan2(_FLAT[2], math.hypot(_FLAT[0], _FLAT[1]))
 
@@ -71,6 +75,7 @@ class PlantedFeet:
         weight = self._pull * certain[:, :-1, :, None]
         change = -(weight * slide).sum(2) / (1.0 + weight.sum(2))
         change = _smooth(F.pad(change, (0, 0, 0, 1)), _SLIDE_FRAMES)
+        change[..., 0] -= _smooth(change[..., :1], _DRIFT_FRAMES)[..., 0]
         features[..., self._planar] += change
         features[..., self._velocities.start : self._velocities.stop : 3] += change[..., :1]
         features[..., self._velocities.start + 2 : self._velocities.stop : 3] += change[..., 1:]

@@ -38,7 +38,6 @@ class FittedScore:
         knots: Values at `KNOTS` [6, S].
         weights: Of the straight line and of what is beyond each knot [7, S].
         bias: Log odds of a motion all of whose statistics are at the centre.
-        implausible_below: A score below this is implausible.
         marginal_below: A score below this is marginal.
     """
 
@@ -48,7 +47,6 @@ class FittedScore:
     knots: Array = field(repr=False)
     weights: Array = field(repr=False)
     bias: float
-    implausible_below: float
     marginal_below: float
 
     def score(self, values: Mapping[str, float]) -> float:
@@ -93,7 +91,7 @@ class FittedScore:
             name: np.vectorize(lambda v: float(f"{v:.5g}"))(getattr(self, name)).tolist()
             for name in arrays
         }
-        plain = ("bias", "implausible_below", "marginal_below")
+        plain = ("bias", "marginal_below")
         return {"names": list(self.names), **rounded, **{n: getattr(self, n) for n in plain}}
 
     @classmethod
@@ -104,7 +102,6 @@ class FittedScore:
             names=tuple(data["names"]),
             **arrays,
             bias=float(data["bias"]),
-            implausible_below=float(data["implausible_below"]),
             marginal_below=float(data["marginal_below"]),
         )
 

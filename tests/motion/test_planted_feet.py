@@ -25,9 +25,18 @@ def _clip(paths, name):
 def test_a_root_that_drifts_over_standing_feet_is_held(real_paths, name):
     features = _clip(real_paths, name)
     drifting = features.copy()
-    drifting[:, PLANAR] += [0.3, 0.0]
+    drifting[:, PLANAR] += [0.0, 0.3]
     held = _planted(drifting)[:, PLANAR] - features[:, PLANAR]
-    assert np.abs(held[:, 0]).mean() < 0.12
+    assert np.abs(held[:, 1]).mean() < 0.12
+
+
+def test_sideways_a_root_may_drift_but_not_shake():
+    still = STATE.encode(standing(80))
+    drifting, shaking = still.copy(), still.copy()
+    drifting[:, PLANAR] += [0.3, 0.0]
+    assert _planted(drifting)[:, PLANAR][:, 0].mean() > 0.25
+    shaking[:, PLANAR.start] += 0.3 * np.sin(np.arange(80) * 2.0 * np.pi / 8.0)
+    assert np.abs(_planted(shaking)[:, PLANAR][:, 0]).mean() < 0.1
 
 
 def test_feet_in_the_air_hold_nothing():

@@ -33,7 +33,7 @@ def _statistics(motion: Motion) -> dict[str, float]:
 def test_broken_motion_scores_low_and_the_statistic_is_named(broken, words):
     model = fitted_score()
     values = _statistics(broken)
-    assert model.score(values) < model.implausible_below < model.score(_statistics(waving(60)))
+    assert model.score(values) < model.marginal_below < model.score(_statistics(waving(60)))
     told = model.worst(values, 3)
     assert any(word in line for word in words for line in told), told
 
