@@ -1,7 +1,7 @@
 """Draw a long motion as a sheet: a row for every whole-body text of its request.
 
-    motiondiffuse generate --request docs/timeline.yaml --out out/
-    python -m benchmarks.timeline_sheet --plan out --out docs/timeline.png
+motiondiffuse generate --request docs/timeline.yaml --out out/
+python -m benchmarks.timeline_sheet --plan out --out docs/timeline.png
 """
 
 from __future__ import annotations
