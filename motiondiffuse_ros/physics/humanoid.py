@@ -74,7 +74,7 @@ def _bodies(scene: bool) -> mujoco.MjSpec:
     spec.option.timestep = TIMESTEP
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     if scene:
-        _add_scene(spec)
+        add_scene(spec)
     table = hinge_table()
     for j, name in enumerate(CANONICAL.names):
         parent = CANONICAL.parents[j]
@@ -140,7 +140,8 @@ def _add_geom(body: mujoco.MjsBody, solid: Solid) -> None:
     body.add_geom(name=solid.joint, mass=solid.mass, rgba=colour, **shape)
 
 
-def _add_scene(spec: mujoco.MjSpec) -> None:
+def add_scene(spec: mujoco.MjSpec) -> None:
+    """Add floor, sky and light to a model."""
     spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1280, 960
     # software renderers are common where this runs; shadows would take most of their time

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mujoco
 
-from motiondiffuse_ros.physics.humanoid import _add_scene
+from motiondiffuse_ros.physics.humanoid import add_scene
 
 
 def add_floor(spec: mujoco.MjSpec) -> None:
@@ -13,4 +13,4 @@ def add_floor(spec: mujoco.MjSpec) -> None:
         return
     for light in list(spec.worldbody.lights):
         spec.delete(light)
-    _add_scene(spec)
+    add_scene(spec)
