@@ -25,7 +25,7 @@ def _run(*arguments, cwd):
         (["generate", "walk", "--seconds", "nan"], "finite"),
         (["generate", "walk", "--seconds", "-3"], "times are finite and from 0"),
         (["generate", "walk", "--seconds", "9999"], "longest motion is 600"),
-        (["generate", "walk", "--robot", "toaster"], "the robots are humanoid"),
+        (["generate", "walk", "--robot", "toaster"], "the robots are g1, humanoid"),
         (["generate", "walk", "--weights", "nowhere"], "checkpoint nowhere"),
         (["generate", "walk", "--request", "r.yaml"], "either a text or --request"),
         (["generate", "--request", "none.yaml"], "cannot be read"),
