@@ -4,7 +4,7 @@
 
 Each request asks for a gait along a random arc: two or three waypoints at random times, half of
 them with a heading, at a speed that suits the gait. The same text and seed are sampled once with
-the waypoints and once without; phys-err is that of the motions as plans hold them.
+the waypoints and once without; neither is repaired, which plans with waypoints never are.
 """
 
 from __future__ import annotations
@@ -133,7 +133,9 @@ def measure(plan: Plan, free: Plan, waypoints: tuple[Waypoint, ...], text: str) 
 def main(options: Options) -> None:
     """Print the table and write the figures."""
     planner = Planner(
-        PlannerConfig(weights=options.weights, candidates=options.candidates, track=False)
+        PlannerConfig(
+            weights=options.weights, candidates=options.candidates, track=False, repair=False
+        )
     )
     rng = np.random.default_rng(options.seed)
     rows: list[Passed] = []
