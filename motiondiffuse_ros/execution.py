@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics.report import IMPLAUSIBLE, MARGINAL, Report
-from motiondiffuse_ros.physics.tracking import Execution, track_by_sampling
+from motiondiffuse_ros.physics.tracking import Execution, SamplingConfig, track_by_sampling
 
 NONE, VERIFY, PUBLISH_EXECUTED = EXECUTIONS = ("none", "verify", "publish_executed")
 """What the planner does: nothing, report how execution ends, or also publish what was executed."""
@@ -19,6 +19,7 @@ def execute(
     *,
     publish: bool,
     judge: Callable[[Motion], Report],
+    sampling: SamplingConfig | None = None,
     cancelled: Callable[[], bool] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Motion, Report]:
@@ -29,6 +30,7 @@ def execute(
         report: On it.
         publish: Return the executed motion, if it came to its end.
         judge: Makes the report of that.
+        sampling: How the tracking samples; None is the default way.
         cancelled: Asked before every plan of the tracking.
         progress: Told the share done, 0 to 1.
 
@@ -39,7 +41,7 @@ def execute(
         PhysicsError: If the motion is too short or not finite.
         Cancelled: If `cancelled` says so.
     """
-    execution = track_by_sampling(motion, cancelled=cancelled, progress=progress)
+    execution = track_by_sampling(motion, sampling, cancelled=cancelled, progress=progress)
     if publish and execution.success:
         motion = execution.motion
         report = judge(motion)

@@ -7,6 +7,7 @@ from synthetic import moved, standing, waving
 from motiondiffuse_ros.errors import RequestError
 from motiondiffuse_ros.execution import execute
 from motiondiffuse_ros.physics import assess
+from motiondiffuse_ros.physics.tracking import SamplingConfig
 from motiondiffuse_ros.planner import Planner, PlannerConfig
 from motiondiffuse_ros.request import MotionRequest
 
@@ -27,7 +28,13 @@ def test_what_was_executed_is_published_with_its_own_report():
 
 def test_what_cannot_be_executed_stays_as_planned_and_says_so():
     hovering = moved(standing(21), np.array([0.0, 0.0, 1.5]))
-    motion, report = execute(hovering, judge(standing(21)), publish=True, judge=judge)
+    motion, report = execute(
+        hovering,
+        judge(standing(21)),
+        publish=True,
+        judge=judge,
+        sampling=SamplingConfig(directions=8, retries=0),
+    )
     assert motion is hovering
     assert report.verdict == "marginal"
     assert "it falls at 0." in report.reasons[-1]

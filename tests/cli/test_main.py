@@ -75,7 +75,7 @@ def test_generate_then_check(tmp_path):
     assert made.returncode == 0, made.stderr
     assert {p.name for p in (tmp_path / "out").iterdir()} == {
         *("plan.json", "report.json", "motion.bvh", "motion.npz"),
-        *("trajectory.csv", "root.csv", "motion.gif"),
+        *("trajectory.csv", "root.csv", "tracking.csv", "tracking.npz", "motion.gif"),
     }
     checked = _run("check", "out/motion.bvh", "--out", "again.json", cwd=tmp_path)
     assert checked.returncode == 0, checked.stderr
