@@ -67,6 +67,11 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "track": ParameterSpec(
         _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
     ),
+    "repair": ParameterSpec(
+        _DEFAULT.repair,
+        "hold feet and level the body after sampling, where that makes a motion more plausible",
+        at_configure=True,
+    ),
     "execution": ParameterSpec(
         _DEFAULT.execution,
         "plans are executed without assistance in simulation: not at all, to report how that "
@@ -125,6 +130,7 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         accelerations=parameters["accelerations"],
         device=parameters["device"],
         track=parameters["track"],
+        repair=parameters["repair"],
         execution=parameters["execution"],
     )
 
