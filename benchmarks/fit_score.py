@@ -23,6 +23,7 @@ from scipy.special import expit
 
 from benchmarks.corruptions import CORRUPTIONS
 from benchmarks.level_clips import level_clips
+from benchmarks.physics_verdict import area_under_roc
 from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics import fitted_score
@@ -84,7 +85,7 @@ def main(arguments: Arguments) -> None:
     )
     for kind in CORRUPTIONS:
         broken = scores[samples.kinds == kind]
-        area = float(np.mean(real[:, None] > broken[None])) if len(broken) else np.nan
+        area = area_under_roc(real, broken) if len(broken) else np.nan
         Console().print(f"{kind:>20}  {len(broken)} motions, area under ROC {area:.3f}")
     note = "made by benchmarks/fit_score.py, which see; not to be edited"
     settings = {k: v for k, v in asdict(arguments).items() if k not in ("corpus", "cache")}

@@ -30,7 +30,7 @@ from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.motion.skeleton import TOE_HEIGHT
+from motiondiffuse_ros.motion.skeleton import SIDES, TOE_HEIGHT
 from motiondiffuse_ros.physics.foot_skating import (
     GMD_HEIGHT,
     GMD_SPEED,
@@ -42,7 +42,7 @@ from motiondiffuse_ros.physics.repair import put_on_floor
 from motiondiffuse_ros.physics.state import motion_to_qpos
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.robots import Robot, broken_promises, build_trajectory, get_robot
-from motiondiffuse_ros.robots.embodiment import SIDES, embodiment
+from motiondiffuse_ros.robots.embodiment import embodiment
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
 from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
 

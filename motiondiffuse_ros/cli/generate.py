@@ -50,8 +50,8 @@ class Generate:
     """Denoising steps."""
     guidance_scale: float | None = None
     """Weight of the text; 1 is none."""
-    scheduler: str = "dpm-solver++"
-    """ddim, ddpm or dpm-solver++."""
+    scheduler: str | None = None
+    """ddim, ddpm or dpm-solver++; the last if not given."""
     robot: str | None = None
     """Robot to retarget to: humanoid, g1, or a description file (docs/robots.md)."""
     weights: Path | None = None
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str]) -> int:
         PlannerConfig(
             weights=options.weights,
             text_encoder=options.text_encoder,
-            scheduler=options.scheduler,
+            scheduler=options.scheduler or defaults.scheduler,
             steps=request.steps or defaults.steps,
             control_rate=options.rate,
             track=options.track,

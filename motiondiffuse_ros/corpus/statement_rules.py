@@ -17,6 +17,7 @@ from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
 from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import CANONICAL, TOE_HEIGHT
+from motiondiffuse_ros.motion.spans import runs
 
 _UPRIGHT = np.cos(np.radians(35.0))
 _TURN, _HALF_TURN = np.radians(50.0), np.radians((140.0, 230.0))
@@ -216,8 +217,7 @@ def _jumps(body: _Body, fps: float) -> list[Finding]:
     toes = np.minimum(body.level("left_foot"), body.level("right_foot"))[1:-1]
     falling = np.diff(body.height, 2) * fps**2 < _FREE_FALL
     flying = (toes > TOE_HEIGHT + _OFF_THE_FLOOR) & falling
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flying.astype(int), [0]])))
-    times = int((edges[1::2] - edges[::2] >= _FLIGHT * fps).sum())
+    times = sum(stop - start >= _FLIGHT * fps for start, stop in runs(flying))
     if not times:
         return []
     return [Finding("jump"), Finding("jumps")] if times > 2 else [Finding("jump")]

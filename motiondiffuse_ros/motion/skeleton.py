@@ -120,6 +120,9 @@ def _canonical() -> Skeleton:
 
 CANONICAL = _canonical()
 
+SIDES = ("left", "right")
+"""What names of paired joints begin with."""
+
 # Height of the joint above the sole when the foot stands flat [m].
 ANKLE_HEIGHT = 0.08
 TOE_HEIGHT = 0.02

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.physics.floor_points import FloorPoints
-from motiondiffuse_ros.physics.foot_skating import SIDES
 from motiondiffuse_ros.physics.geometry import body_probes, sole_probes
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.humanoid import humanoid_model

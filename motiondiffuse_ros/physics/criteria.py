@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.measures import RATE, Series
 
 _SHORTEST_SPAN = 2
@@ -188,11 +189,10 @@ def _times(start: float, end: float) -> str:
 
 def _spans(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return the runs of True as (start, stop), short gaps bridged, single frames left out."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
-    runs: list[tuple[int, int]] = []
-    for a, b in edges.reshape(-1, 2).tolist():
-        if runs and a - runs[-1][1] <= _BRIDGED_GAP:
-            runs[-1] = (runs[-1][0], b)
+    bridged: list[tuple[int, int]] = []
+    for a, b in runs(flags):
+        if bridged and a - bridged[-1][1] <= _BRIDGED_GAP:
+            bridged[-1] = (bridged[-1][0], b)
         else:
-            runs.append((a, b))
-    return [run for run in runs if run[1] - run[0] >= _SHORTEST_SPAN]
+            bridged.append((a, b))
+    return [(a, b) for a, b in bridged if b - a >= _SHORTEST_SPAN]

@@ -17,14 +17,13 @@ from scipy.ndimage import uniform_filter1d
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.physics.geometry import sole_probes
 
 GMD_HEIGHT, GMD_SPEED, GMD_WINDOW = 0.05, 0.5, 5
 
 CONTACT_HEIGHT = 0.025
 """A corner of a sole below this [m] in two frames may carry the body."""
-
-SIDES = ("left", "right")
 
 
 @dataclass(frozen=True, eq=False)

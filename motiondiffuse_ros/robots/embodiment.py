@@ -11,10 +11,8 @@ import numpy as np
 from motiondiffuse_ros.errors import RobotError
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.motion.skeleton import LEG_LENGTH
+from motiondiffuse_ros.motion.skeleton import LEG_LENGTH, SIDES
 from motiondiffuse_ros.robots.robot import Robot, solid_points
-
-SIDES = ("left", "right")
 
 _SOLE = 0.015
 """Points of a foot up to this above its lowest one belong to the sole [m]."""

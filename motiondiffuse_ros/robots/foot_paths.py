@@ -18,9 +18,10 @@ from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS, detect_contacts
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.motion.skeleton import TOE_HEIGHT
+from motiondiffuse_ros.motion.skeleton import SIDES, TOE_HEIGHT
+from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.geometry import sole_probes
-from motiondiffuse_ros.robots.embodiment import SIDES, Embodiment
+from motiondiffuse_ros.robots.embodiment import Embodiment
 
 LEAST_STANCE = 0.1
 """Shorter contacts are none, and shorter gaps in one are contact [s]."""
@@ -131,15 +132,14 @@ def _correction(
     """
     bears = np.stack([heel, heel, toes, toes], axis=1)
     both = (bears[1:] & bears[:-1]).astype(float)
-    holds = both.any(axis=1)
+    holds = np.asarray(both.any(axis=1))
     weights = both / np.maximum(both.sum(axis=1, keepdims=True), 1.0)
     # the ankle goes back by as much as the bearing part of the sole would move
     roll = -np.einsum("tc,tcd->td", weights, np.diff(corners, axis=0))
     travelled = np.concatenate([np.zeros((1, 2)), np.cumsum(roll, axis=0)])
     known = np.zeros(len(planned), dtype=bool)
     out = np.zeros_like(planned)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in runs(holds):
         frames = slice(first, last + 1)
         missing = travelled[frames] - planned[frames]
         out[frames] = missing - missing.mean(axis=0)

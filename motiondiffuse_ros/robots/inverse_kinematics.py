@@ -11,9 +11,9 @@ from motiondiffuse_ros.errors import Cancelled, RobotError
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, LEG_LENGTH
+from motiondiffuse_ros.motion.skeleton import ANKLE_HEIGHT, LEG_LENGTH, SIDES
 from motiondiffuse_ros.robots.clearance import Clearance
-from motiondiffuse_ros.robots.embodiment import SIDES, Embodiment, embodiment
+from motiondiffuse_ros.robots.embodiment import Embodiment, embodiment
 from motiondiffuse_ros.robots.foot_paths import FootPath
 from motiondiffuse_ros.robots.joint_box import JointBox
 from motiondiffuse_ros.robots.robot import Robot

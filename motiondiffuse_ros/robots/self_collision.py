@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.robots.clearance import DISTANCE
-from motiondiffuse_ros.robots.embodiment import SIDES
 from motiondiffuse_ros.robots.robot import Robot
 
 OVERLAP = 0.005

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from motiondiffuse_ros.errors import RobotError
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.robots.embodiment import SIDES, embodiment
+from motiondiffuse_ros.motion.skeleton import SIDES
+from motiondiffuse_ros.robots.embodiment import embodiment
 from motiondiffuse_ros.robots.robot import Robot
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
 

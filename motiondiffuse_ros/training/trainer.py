@@ -85,7 +85,7 @@ class Trainer:
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)
-        self._started_from = "" if start is None else start.sha256
+        self._started_from = None if start is None else start.sha256
         if start is not None:
             self._start_from(start)
         self._optimizer = torch.optim.AdamW(
@@ -288,7 +288,7 @@ class Trainer:
         self._optimizer.load_state_dict(state["optimizer"])
         self._ema.load_state_dict(state["ema"])
         self._step, self._seconds = state["step"], state["seconds"]
-        self._started_from = state.get("started_from", "")
+        self._started_from = state.get("started_from")
         torch.manual_seed(self._config.seed + self._step)
 
     def _record_settings(self) -> None:
@@ -296,7 +296,7 @@ class Trainer:
             "training": self._config.to_dict(),
             "denoiser": self._denoiser.config.to_dict(),
             "parameters": sum(p.numel() for p in self._denoiser.parameters()),
-            "started_from": self._started_from or None,
+            "started_from": self._started_from,
             "train_clips": len(self._corpus.split("train")),
         }
         (self._out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")

@@ -9,8 +9,9 @@ from synthetic import standing, turned, waving
 
 from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import rotations as rot
+from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.robots import broken_promises, build_trajectory, path_scale, retarget
-from motiondiffuse_ros.robots.embodiment import SIDES, embodiment
+from motiondiffuse_ros.robots.embodiment import embodiment
 from motiondiffuse_ros.robots.self_collision import self_collision_pairs
 from motiondiffuse_ros.robots.start_state import StartState
 from motiondiffuse_ros.robots.trajectory_state import TrajectoryState

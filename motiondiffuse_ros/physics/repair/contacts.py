@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.spans import runs
 
 
 @dataclass(frozen=True)
@@ -44,12 +45,6 @@ def foot_contacts(corners: Array, fps: float, rule: ContactRule) -> NDArray[np.b
     for foot in range(contacts.shape[1]):
         contacts[:, foot] = _without_short_runs(contacts[:, foot], rule.shortest)
     return contacts
-
-
-def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the runs of True as (start, stop)."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(int)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def _slowest_corner(corners: Array, fps: float) -> Array:

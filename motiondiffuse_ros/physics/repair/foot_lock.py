@@ -17,11 +17,11 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import SIDES
+from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.geometry import sole_probes
-from motiondiffuse_ros.physics.repair.contacts import ContactRule, foot_contacts, runs
+from motiondiffuse_ros.physics.repair.contacts import ContactRule, foot_contacts
 from motiondiffuse_ros.physics.repair.two_bones import reach_ankle
-
-SIDES = ("left", "right")
 
 _RULE = ContactRule()
 _FLAT = np.radians(20.0)  # a standing sole less steep than this lies on the floor

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.foot_skating import SIDES
 from motiondiffuse_ros.physics.statistics.frames import in_heading, planted, quantiles
 
 _UP, _AHEAD = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
@@ -21,7 +21,7 @@ _USUAL_TOE_OUT = 0.2  # rad, where no two planted feet show it
 
 def posture(motion: Motion, states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     """Return tilts and angles [rad, or the sine of them] and distances [m]."""
-    heading = rot.twist_angle(rot.continuous(motion.rotations[:, 0]), axis=2)
+    heading = motion.heading
     return {
         **_soles(motion, states, heading),
         **_centre_over_feet(states, dynamics, heading),

@@ -33,7 +33,7 @@ _BANDS = ((1.0, 2.0), (2.0, 4.0), (4.0, 7.0), (7.0, 10.1))  # Hz
 
 def tempo(motion: Motion, states: BodyStates) -> dict[str, float]:
     """Return logarithms of speeds, accelerations, jerks and of ratios between them."""
-    heading = rot.about_axis(2, -rot.twist_angle(rot.continuous(motion.rotations[:, 0]), axis=2))
+    heading = rot.about_axis(2, -motion.heading)
     local = rot.rotate(heading[:, None], motion.positions - motion.positions[:, :1])
     out: dict[str, float] = {}
     for name, joints in _GROUPS.items():

@@ -19,9 +19,12 @@ from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.humanoid import DAMPING_RATIO, TIMESTEP, humanoid_model
-from motiondiffuse_ros.physics.state import motion_to_qpos, state_velocities
 from motiondiffuse_ros.physics.tracking.model import DIVERGED
-from motiondiffuse_ros.physics.tracking.reference import FALL_DISTANCE, check_trackable
+from motiondiffuse_ros.physics.tracking.reference import (
+    FALL_DISTANCE,
+    check_trackable,
+    reference_states,
+)
 
 CONTROL_RATE = 100.0
 """How often the controller's targets are renewed [Hz]."""
@@ -70,9 +73,7 @@ def track(
     """
     check_trackable(motion)
     reference = motion.resample(CONTROL_RATE)
-    qpos = motion_to_qpos(reference)
-    velocity, _ = state_velocities(qpos, CONTROL_RATE)
-    velocity = np.concatenate([velocity[:1], velocity, velocity[-1:]])
+    qpos, velocity = reference_states(reference)
     # the actuator damps towards zero speed; this shift makes it damp towards the reference's
     targets = qpos[:, 7:] + DAMPING_RATIO * velocity[:, 6:]
 

@@ -54,6 +54,13 @@ class Reference:
         return len(self.qpos)
 
 
+def reference_states(motion: Motion) -> tuple[Array, Array]:
+    """Return what a trackable motion asks for in each frame: `qpos` [T, 70] and `qvel` [T, 69]."""
+    qpos = motion_to_qpos(motion)
+    inner, _ = state_velocities(qpos, motion.fps)
+    return qpos, np.concatenate([inner[:1], inner, inner[-1:]])
+
+
 def make_reference(motion: Motion, model: mujoco.MjModel) -> Reference:
     """Sample a trackable motion at a model's time step.
 
@@ -61,9 +68,7 @@ def make_reference(motion: Motion, model: mujoco.MjModel) -> Reference:
     inverse dynamics finds with the floor's forces acting.
     """
     rate = 1.0 / model.opt.timestep
-    qpos = motion_to_qpos(motion.resample(rate))
-    inner, _ = state_velocities(qpos, rate)
-    qvel = np.concatenate([inner[:1], inner, inner[-1:]])
+    qpos, qvel = reference_states(motion.resample(rate))
     torques = _torques(motion, np.arange(len(qpos)) / rate)
     controls = qpos[:, 7:] + DAMPING_RATIO * qvel[:, 6:] + torques / hinge_table().stiffness
 
