@@ -36,11 +36,13 @@ class Seam:
         playing: What is executed until then.
         time: Of the seam.
         start: The state and the motion there.
+        resets: Of the clock, when the seam was set.
     """
 
     playing: Playing
     time: Time
     start: Start
+    resets: int
 
 
 class Continuity:
@@ -53,6 +55,7 @@ class Continuity:
 
     def seam(self, request: MotionRequest) -> Seam | None:
         """Return where a plan for a request is to join; None if nothing is executed."""
+        resets = self._reference.resets
         playing, robot = self._reference.playing, get_robot(request.robot)
         if playing is None or self._pace is None:
             return None
@@ -67,14 +70,19 @@ class Continuity:
         elapsed = playing.elapsed(time)
         states = playing.states
         lead_in = states.motion_up_to(robot, elapsed, LEAD_IN, self._planner.fps)
-        return Seam(playing, time, Start(lead_in, states.at(elapsed)))
+        return Seam(playing, time, Start(lead_in, states.at(elapsed)), resets)
 
     def learn(self, plan: Plan) -> None:
         """Remember how long a plan took."""
         self._pace = plan.timings_s["total"] / _work(plan.request)
 
-    def fitted(self, plan: Plan, seam: Seam) -> tuple[Plan, Time]:
-        """Return a plan whose first point can still be met, and when that is due."""
+    def fitted(self, plan: Plan, seam: Seam) -> tuple[Plan, Time | None]:
+        """Return a plan whose first point can still be met, and when that is due.
+
+        None is at once: the clock was reset meanwhile, and nothing is executed any more.
+        """
+        if self._reference.resets != seam.resets:
+            return plan, None
         now = self._clock.now()
         if now.nanoseconds + SWITCH * 0.5e9 <= seam.time.nanoseconds:
             return plan, seam.time

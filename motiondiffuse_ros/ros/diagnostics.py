@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from std_msgs.msg import Header
+
+from motiondiffuse_ros.ros.steady import create_steady_timer
 
 LEVELS = {
     "ok": DiagnosticStatus.OK,
@@ -37,7 +38,7 @@ class Diagnostics:
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._level, self._message = "ok", "starting"
         self._values: dict[str, object] = {}
-        self._timer = node.create_timer(REPEAT, self.publish, MutuallyExclusiveCallbackGroup())
+        self._timer = create_steady_timer(node, REPEAT, self.publish)
 
     def set(self, level: str, message: str, **values: object) -> None:
         """Replace level and message, add to the values, and publish at once."""

@@ -20,7 +20,7 @@ from motiondiffuse_ros.action import GenerateMotion
 from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
-from motiondiffuse_ros.planner import Planner, Progress
+from motiondiffuse_ros.planner import Plan, Planner, Progress
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.continuity import Continuity
@@ -33,6 +33,7 @@ from motiondiffuse_ros.ros.planning_queue import Job, NotActive, PlanningQueue
 from motiondiffuse_ros.ros.present_joints import PresentJoints
 from motiondiffuse_ros.ros.qos import COMMANDS
 from motiondiffuse_ros.ros.spinning import run_node
+from motiondiffuse_ros.ros.steady import create_steady_timer
 
 HEARTBEAT = 0.2
 """Period of the timer that ends withdrawn goals before they are started [s]."""
@@ -75,9 +76,9 @@ class MotionDiffuseNode(LifecycleNode):
         self._health = Diagnostics(self)
         self._health.set("warn", "unconfigured")
         self._group = MutuallyExclusiveCallbackGroup()
-        self._heartbeat = self.create_timer(HEARTBEAT, self._beat, MutuallyExclusiveCallbackGroup())
+        self._heartbeat = create_steady_timer(self, HEARTBEAT, self._beat)
         if self.settings["autostart"]:
-            self._autostart = self.create_timer(0.0, self._start, MutuallyExclusiveCallbackGroup())
+            self._autostart = create_steady_timer(self, 0.0, self._start)
 
     def _start(self) -> None:
         self._autostart.cancel()
@@ -214,18 +215,30 @@ class MotionDiffuseNode(LifecycleNode):
         at = None
         if seam is not None:
             plan, at = continuity.fitted(plan, seam)
-        elif (present := self._configured.joints.state(get_robot(plan.robot))) is not None:
+        present = None if at else self._configured.joints.state(get_robot(plan.robot))
+        if present is not None:
             plan = planner.restarted(plan, present)
-        if self.settings["plan_dir"] and at is None:
-            plan.save(Path(self.settings["plan_dir"]))
+        if at is None:
+            self._save(plan)
         message = self._configured.publisher.publish(plan, at)
-        if self.settings["plan_dir"] and at is not None:  # after publication: its time is set
-            plan.save(Path(self.settings["plan_dir"]))
+        if at is not None:  # after publication: its time is set
+            self._save(plan)
         self.get_logger().info(
             f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
             f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)
         )
         return message
+
+    def _save(self, plan: Plan) -> None:
+        """Write the plan's files, if wanted; that they cannot be written does not undo a plan."""
+        folder = self.settings["plan_dir"]
+        if not folder:
+            return
+        try:
+            plan.save(Path(folder).expanduser())
+        except OSError as error:
+            line = f"plan_dir {folder}: not written ({error.strerror})"
+            self.get_logger().error(line)
 
     def _submit(self, job: Job[MotionPlan]) -> Future[MotionPlan]:
         """Refuse a bad request, or queue it."""

@@ -6,6 +6,8 @@ from array import array
 from dataclasses import dataclass
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.clock import JumpThreshold, TimeJump
+from rclpy.duration import Duration
 from rclpy.lifecycle import LifecycleNode
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
@@ -13,6 +15,9 @@ from sensor_msgs.msg import JointState
 from motiondiffuse_ros.robots.trajectory import JointTrajectory
 from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
 from motiondiffuse_ros.ros.qos import STREAM
+
+BACKWARD = 0.1
+"""A clock that runs back by more, such as that of a simulation reset, ends what is streamed [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +47,11 @@ class Playing:
 
 
 class ReferenceStream:
-    """Publishes `~/reference`: the joints that a plan asks for now, until it has ended."""
+    """Publishes `~/reference`: the joints that a plan asks for now, until it has ended.
+
+    Attributes:
+        resets: How often the clock ran back or was changed for another.
+    """
 
     def __init__(self, node: LifecycleNode, rate: float) -> None:
         """Create publisher and timer.
@@ -56,6 +65,13 @@ class ReferenceStream:
         self._current: Playing | None = None
         self._timer = node.create_timer(
             1.0 / rate, self._publish, MutuallyExclusiveCallbackGroup(), autostart=False
+        )
+        self.resets = 0
+        self._resets = node.get_clock().create_jump_callback(
+            JumpThreshold(
+                min_forward=None, min_backward=Duration(nanoseconds=-round(BACKWARD * 1e9))
+            ),
+            post_callback=self._on_reset,
         )
 
     @property
@@ -85,8 +101,14 @@ class ReferenceStream:
     def destroy(self) -> None:
         """Remove publisher and timer from the node."""
         self.stop()
+        self._resets.unregister()
         self._node.destroy_timer(self._timer)
         self._node.destroy_lifecycle_publisher(self._publisher)
+
+    def _on_reset(self, jump: TimeJump) -> None:
+        # stamps of before say nothing about times to come
+        self.resets += 1
+        self.stop()
 
     def _publish(self) -> None:
         # start() may replace it at any time from the planning thread
