@@ -85,6 +85,10 @@ class MotionClient:
                 raise Unreachable(f"no sign of {what} for {timeout:g} s")
             self._executor.spin_once(timeout_sec=0.1)
 
+    def spin(self, seconds: float) -> None:
+        """Handle the next ROS event that comes within `seconds`."""
+        self._executor.spin_once(timeout_sec=seconds)
+
     def wait_for_node(self, timeout: float) -> None:
         """Wait until the node takes goals, for at most `timeout` seconds.
 
