@@ -1,0 +1,1 @@
+"""What `benchmarks.speed` measures, a file for each part of the way."""

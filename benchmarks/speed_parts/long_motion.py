@@ -1,0 +1,70 @@
+"""Time and memory of one long motion in a process of its own.
+
+python -m benchmarks.speed_parts.long_motion --seconds 600 [--candidates 4]
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+
+import tyro
+
+from benchmarks.speed_parts.clock import forget_peak, memory_mb, seconds
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to plan."""
+
+    seconds: float
+    """Length of the motion [s]."""
+    candidates: int = 4
+    """Motions to choose from."""
+
+
+def measure_long(length: float, candidates: int) -> dict[str, float]:
+    """Plan a motion in a new process that has planned 2 s before.
+
+    Returns:
+        `motion_s` and `plan_s` [s]; `before_mb` and `peak_mb`, resident memory before and its
+        peak while planning; `own_mb`, the bytes of the plan's motion and trajectory.
+    """
+    module = "benchmarks.speed_parts.long_motion"
+    command = ["--seconds", str(length), "--candidates", str(candidates)]
+    ended = subprocess.run(
+        [sys.executable, "-m", module, *command], check=True, capture_output=True, text=True
+    )
+    return json.loads(ended.stdout.splitlines()[-1])
+
+
+def main(options: Options) -> None:
+    """Plan, and print the figures as JSON."""
+    from motiondiffuse_ros.planner import Planner, PlannerConfig
+    from motiondiffuse_ros.request import MotionRequest
+
+    planner = Planner(PlannerConfig(candidates=options.candidates))
+    text = "a person walks forward"
+    planner.plan(MotionRequest.from_text(text, 2.0, seed=0))
+    forget_peak()
+    before = memory_mb()["now"]
+    plans = []
+    request = MotionRequest.from_text(text, options.seconds, seed=0)
+    took = seconds(lambda: plans.append(planner.plan(request)))
+    motion, trajectory = plans[0].motion, plans[0].trajectory
+    arrays = [*vars(motion).values(), *vars(trajectory).values()]
+    figures = {
+        "motion_s": options.seconds,
+        "plan_s": took,
+        "before_mb": before,
+        "peak_mb": memory_mb()["peak"],
+        "own_mb": sum(getattr(a, "nbytes", 0) for a in arrays) / 2**20,
+        **{f"{stage}_s": value for stage, value in plans[0].timings_s.items()},
+    }
+    print(json.dumps(figures))
+
+
+if __name__ == "__main__":
+    main(tyro.cli(Options))

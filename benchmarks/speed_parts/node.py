@@ -1,0 +1,132 @@
+"""The node as a process of its own, as a robot meets it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from benchmarks.speed_parts.clock import memory_mb
+from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
+from motiondiffuse_ros.ros.client import MotionClient
+from motiondiffuse_ros.ros.processes import isolate, ros_arguments, running
+from motiondiffuse_ros.ros.qos import COMMANDS, LATCHED, STREAM
+
+TEXT = "a person walks forward and waves with the right hand"
+PATIENCE = 120.0
+"""For an answer [s]."""
+QUIET = 0.3
+"""A stream of set-points that paused for longer has ended [s]."""
+
+
+@dataclass(frozen=True)
+class NodeSpeed:
+    """What was measured at the node.
+
+    Attributes:
+        startup: From the start of the process to the first accepted goal, of each start [s].
+        text_to_plan: From publishing a sentence to its plan's arrival [s], each.
+        first_setpoint: From publishing a sentence to the first set-point that came of it [s], each.
+        rss: Resident memory after all of it [MiB].
+        rss_peak: The most it ever had [MiB].
+    """
+
+    startup: tuple[float, ...]
+    text_to_plan: tuple[float, ...]
+    first_setpoint: tuple[float, ...]
+    rss: float
+    rss_peak: float
+
+    def to_dict(self) -> dict[str, object]:
+        """Return the contract's keys that come from here."""
+        return {
+            "text_to_plan_s": {
+                "median": float(np.median(self.text_to_plan)),
+                "p95": float(np.percentile(self.text_to_plan, 95)),
+                "all": list(self.text_to_plan),
+            },
+            "first_setpoint_s": float(np.median(self.first_setpoint)),
+            "first_setpoint_all_s": list(self.first_setpoint),
+            "startup_s": float(np.median(self.startup)),
+            "startup_all_s": list(self.startup),
+            "rss_mb": self.rss,
+            "rss_peak_mb": self.rss_peak,
+        }
+
+
+def measure_node(
+    seconds: float, repeats: int, starts: int, parameters: dict[str, object]
+) -> NodeSpeed:
+    """Start the node several times; ask the last one for motions, one after the other.
+
+    Every sentence is sent when the plan before it has come to its end: what a robot at rest
+    waits for. The first answer does not count.
+
+    Args:
+        seconds: Length of the motions [s].
+        repeats: Sentences that count.
+        starts: Processes.
+        parameters: Of the node, beside the length.
+    """
+    isolate(os.environ, os.getpid())
+    arguments = ros_arguments(**{"default_seconds": seconds, **parameters})
+    startup: list[float] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for start in range(starts):
+            with _Listener() as listener:
+                began = time.perf_counter()
+                log = Path(folder) / "node.log"
+                with running("motiondiffuse_ros.ros.node", arguments, log) as process:
+                    listener.wait_for_node(PATIENCE)
+                    goal = listener.send(_request(seconds), lambda feedback: None, PATIENCE)
+                    startup.append(time.perf_counter() - began)
+                    listener.result(goal, PATIENCE)
+                    if start < starts - 1:
+                        continue
+                    answers = [listener.ask() for _ in range(repeats + 1)][1:]
+                    memory = memory_mb(process.pid)
+                    plans, setpoints = zip(*answers, strict=True)
+                    return NodeSpeed(
+                        tuple(startup), plans, setpoints, memory["now"], memory["peak"]
+                    )
+    raise AssertionError("the last start returns")
+
+
+class _Listener(MotionClient):
+    """A client that notes when plans and set-points arrive."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._plan = self._first = self._last = 0.0
+        self._text = self.node.create_publisher(String, "motiondiffuse/text", COMMANDS)
+        self.node.create_subscription(MotionPlan, "motiondiffuse/plan", self._on_plan, LATCHED)
+        self.node.create_subscription(
+            JointState, "motiondiffuse/reference", self._on_setpoint, STREAM
+        )
+
+    def ask(self) -> tuple[float, float]:
+        """Return the times from a sentence to its plan and to its first set-point [s]."""
+        self.wait(lambda: time.perf_counter() - self._last > QUIET, PATIENCE, "rest")
+        self._plan = self._first = 0.0
+        began = time.perf_counter()
+        self._text.publish(String(data=TEXT))
+        self.wait(lambda: bool(self._plan and self._first), PATIENCE, "a plan and its set-points")
+        return self._plan - began, self._first - began
+
+    def _on_plan(self, message: MotionPlan) -> None:
+        self._plan = time.perf_counter()
+
+    def _on_setpoint(self, message: JointState) -> None:
+        self._last = time.perf_counter()
+        self._first = self._first or self._last
+
+
+def _request(seconds: float) -> MotionRequest:
+    segment = MotionSegment(text=TEXT, start=0.0, end=seconds)
+    return MotionRequest(segments=[segment], duration=seconds)
