@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from motiondiffuse_ros.errors import RequestError
-from motiondiffuse_ros.fields import check_fields, names, number, rows
+from motiondiffuse_ros.fields import check_fields, names, number, rows, shown
 from motiondiffuse_ros.motion.parts import PARTS
 
 Span = tuple[float, float]
+
+MOST_SPANS = 100
+"""Most spans of an edit."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +43,13 @@ class Edit:
         check_fields(cls, data, "edit")
         motion = data.get("motion")
         if not isinstance(motion, str):
-            raise RequestError(f"edit: 'motion' must be the name of a file, got {motion!r}")
+            raise RequestError(f"edit: 'motion' must be the name of a file, got {shown(motion)}")
         spans = []
         for i, row in enumerate(rows(data.get("keep"), "edit: 'keep'", "[start, end]"), start=1):
             if not isinstance(row, (list, tuple)) or len(row) != 2:
-                raise RequestError(f"edit: span {i} of 'keep' must be [start, end], got {row!r}")
+                raise RequestError(
+                    f"edit: span {i} of 'keep' must be [start, end], got {shown(row)}"
+                )
             start, end = (number(value, f"edit: span {i} of 'keep'") for value in row)
             spans.append((start, end))
         return cls(motion, names(data.get("regenerate"), "edit: 'regenerate'"), tuple(spans))
@@ -72,6 +77,8 @@ class Edit:
             raise RequestError(
                 "edit: keeps nothing; say which parts to regenerate or spans to keep"
             )
+        if len(self.keep) > MOST_SPANS:
+            raise RequestError(f"edit: {len(self.keep)} spans to keep, at most {MOST_SPANS}")
         for part in self.regenerate:
             if part not in PARTS:
                 raise RequestError(

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+LONGEST_MESSAGE = 600
+"""Messages quote input, which may be of any length; longer ones lose their middle [characters]."""
+
 
 class ErrorCode(IntEnum):
     """Result codes of the `GenerateMotion` action, in ranges of one hundred by room."""
@@ -30,6 +33,16 @@ class MotionDiffuseError(Exception):
     """
 
     code = ErrorCode.INTERNAL
+
+    def __str__(self) -> str:
+        """Return the message as one printable line of bounded length."""
+        text = super().__str__()
+        if len(text) > LONGEST_MESSAGE:
+            half = LONGEST_MESSAGE // 2 - 2
+            text = f"{text[:half]} … {text[-half:]}"
+        if not text.isprintable():
+            text = "".join(c if c.isprintable() else " " for c in text)
+        return text
 
 
 class InputError(MotionDiffuseError):

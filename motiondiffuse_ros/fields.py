@@ -4,9 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from reprlib import Repr
 from typing import Any
 
 from motiondiffuse_ros.errors import RequestError
+
+_SHORT = Repr()
+_SHORT.maxstring = _SHORT.maxother = 80
+
+
+def shown(value: Any) -> str:
+    """Return a value of any kind and size for a message."""
+    try:
+        return _SHORT.repr(value)
+    except ValueError:  # an integer of too many digits
+        return f"a huge {type(value).__name__}"
 
 
 def check_fields(cls: type, data: Any, where: str) -> None:
@@ -18,8 +30,10 @@ def check_fields(cls: type, data: Any, where: str) -> None:
     known = [f.name for f in fields(cls)]
     if not isinstance(data, Mapping):
         raise RequestError(f"{where}: must be a mapping with the fields {', '.join(known)}")
-    if unknown := [str(k) for k in data if k not in known]:
-        raise RequestError(f"{where}: unknown field '{unknown[0]}'; they are {', '.join(known)}")
+    if unknown := [k for k in data if k not in known]:
+        raise RequestError(
+            f"{where}: unknown field {shown(unknown[0])}; they are {', '.join(known)}"
+        )
 
 
 def rows(data: Any, where: str, form: str) -> list[Any]:
@@ -31,7 +45,7 @@ def rows(data: Any, where: str, form: str) -> list[Any]:
     if data is None:
         return []
     if not isinstance(data, list):
-        raise RequestError(f"{where} must be a list of {form}, got {data!r}")
+        raise RequestError(f"{where} must be a list of {form}, got {shown(data)}")
     return data
 
 
@@ -42,8 +56,11 @@ def number(value: Any, where: str) -> float:
         RequestError: If it is something else.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise RequestError(f"{where} must be a number, got {value!r}")
-    return float(value)
+        raise RequestError(f"{where} must be a number, got {shown(value)}")
+    try:
+        return float(value)
+    except OverflowError:
+        raise RequestError(f"{where} is too large, got {shown(value)}") from None
 
 
 def names(value: Any, where: str) -> tuple[str, ...]:
@@ -55,5 +72,5 @@ def names(value: Any, where: str) -> tuple[str, ...]:
     if value is None:
         return ()
     if not isinstance(value, (list, tuple)) or not all(isinstance(name, str) for name in value):
-        raise RequestError(f"{where} must be a list of names, got {value!r}")
+        raise RequestError(f"{where} must be a list of names, got {shown(value)}")
     return tuple(value)

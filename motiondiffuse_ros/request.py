@@ -9,11 +9,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RequestError
-from motiondiffuse_ros.fields import check_fields, names, number, rows
+from motiondiffuse_ros.fields import check_fields, names, number, rows, shown
+from motiondiffuse_ros.input_file import load_yaml
 from motiondiffuse_ros.motion.parts import PARTS
 from motiondiffuse_ros.timeline_text import parse_timeline
 from motiondiffuse_ros.waypoint import Waypoint, validate_waypoints
@@ -29,6 +28,7 @@ class RequestLimits:
         default_seconds: Length of a motion given by a text alone, s.
         max_text: Longest text, characters.
         max_segments: Most segments.
+        max_timeline: Longest typed timeline, characters.
         max_candidates: Most candidates.
         max_steps: Most denoising steps.
         max_guidance_scale: Largest guidance scale.
@@ -41,6 +41,7 @@ class RequestLimits:
     default_seconds: float = 6.0
     max_text: int = 300
     max_segments: int = 200
+    max_timeline: int = 80_000
     max_candidates: int = 64
     max_steps: int = 1000
     max_guidance_scale: float = 20.0
@@ -119,6 +120,8 @@ class MotionRequest:
         Raises:
             RequestError: If a timeline cannot be read.
         """
+        if len(text) > LIMITS.max_timeline:
+            raise RequestError(f"{len(text)} characters of text, at most {LIMITS.max_timeline}")
         pieces = parse_timeline(text)
         if pieces is not None:
             return cls(tuple(Segment(*piece) for piece in pieces), duration=seconds, **settings)
@@ -164,12 +167,9 @@ class MotionRequest:
             RequestError: If it cannot be read or is not a valid request; names the file.
         """
         try:
-            data = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+            data = load_yaml(Path(path), RequestError)
         except OSError as error:
             raise RequestError(f"request {path}: cannot be read ({error.strerror})") from error
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            line = str(error).replace("\n", " ")
-            raise RequestError(f"request {path}: not YAML ({line})") from error
         try:
             return cls.from_dict(data)
         except RequestError as error:
@@ -215,7 +215,7 @@ class MotionRequest:
         _validate_whole("candidates", self.candidates, 1, limits.max_candidates)
         _validate_range("guidance_scale", self.guidance_scale, 0.0, limits.max_guidance_scale, "")
         if not isinstance(self.robot, str) or not self.robot:
-            raise RequestError(f"request: robot must be a name, got {self.robot!r}")
+            raise RequestError(f"request: robot must be a name, got {shown(self.robot)}")
         validate_waypoints(self.waypoints, total)
         if self.edit is not None:
             self.edit.validate(total)
@@ -241,6 +241,8 @@ def _validate_segment(segment: Segment, where: str, limits: RequestLimits) -> No
         raise RequestError(f"{where}: the text is empty; say what to do")
     if len(text) > limits.max_text:
         raise RequestError(f"{where}: {len(text)} characters of text, at most {limits.max_text}")
+    if "\0" in text or any("\ud800" <= c <= "\udfff" for c in text):
+        raise RequestError(f"{where}: the text {text!r} has characters that are not text")
     if not any(c.isalpha() for c in text):
         raise RequestError(f"{where}: the text {text!r} has no words")
     for name in ("start", "end"):
@@ -289,8 +291,10 @@ def _validate_range(name: str, value: Any, low: float, high: float, unit: str) -
     if value is None:
         return
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or not low <= value <= high:
-        raise RequestError(f"request: {name} must be from {low:g} to {high:g}{unit}, got {value}")
+    if not number or not low <= value <= high:
+        raise RequestError(
+            f"request: {name} must be from {low:g} to {high:g}{unit}, got {shown(value)}"
+        )
 
 
 def _validate_whole(name: str, value: Any, low: int, high: int) -> None:
@@ -298,5 +302,5 @@ def _validate_whole(name: str, value: Any, low: int, high: int) -> None:
         return
     if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
         raise RequestError(
-            f"request: {name} must be a whole number from {low} to {high}, got {value}"
+            f"request: {name} must be a whole number from {low} to {high}, got {shown(value)}"
         )

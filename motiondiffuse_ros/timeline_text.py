@@ -11,12 +11,11 @@ import re
 from motiondiffuse_ros.errors import RequestError
 
 _NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
-_PIECE = re.compile(
-    rf"^\s*(?P<parts>[^\[\]]*)\[\s*(?P<start>{_NUMBER})\s*s?\s*[-–]\s*(?P<end>{_NUMBER})\s*s?\s*\]"
-    r"\s*:?(?P<text>.*)$",
-    re.DOTALL,
-)
-_TIMED = re.compile(r"\[[^\]]*\d[^\]]*\]")
+# no piece of text can be divided among the parts of these in more than one way: texts come from
+# anybody, and patterns that try every division take hours for long ones
+_PIECE = re.compile(r"^(?P<parts>[^\[\]]*)\[(?P<span>[^\[\]]*)\]\s*:?(?P<text>.*)$", re.DOTALL)
+_SPAN = re.compile(rf"^ ?{_NUMBER} ?s? ?[-–] ?{_NUMBER} ?s? ?$")
+_TIMED = re.compile(r"\[[^\[\]\d]*\d[^\[\]]*\]")
 FORM = "[0-4] a person walks forward | right_arm[2-4]: waves"
 """How it looks, for messages."""
 
@@ -36,10 +35,11 @@ def parse_timeline(text: str) -> list[Piece] | None:
     pieces = []
     for i, piece in enumerate(text.split("|"), start=1):
         found = _PIECE.match(piece)
-        if found is None:
+        span = found and _SPAN.match(" ".join(found["span"].split()))
+        if not found or not span:
             raise RequestError(
                 f"piece {i} of the text, {piece.strip()!r}, is not a timed text; write: {FORM}"
             )
         parts = tuple(name for name in re.split(r"[\s+,]+", found["parts"].strip()) if name)
-        pieces.append((found["text"].strip(), float(found["start"]), float(found["end"]), parts))
+        pieces.append((found["text"].strip(), float(span[1]), float(span[2]), parts))
     return pieces

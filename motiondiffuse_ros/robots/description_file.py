@@ -12,9 +12,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import yaml
 
 from motiondiffuse_ros.errors import RobotError
+from motiondiffuse_ros.input_file import load_yaml
 from motiondiffuse_ros.motion import CANONICAL
 from motiondiffuse_ros.robots.model_search import find_model
 from motiondiffuse_ros.robots.robot import RobotDescription, standing_on_floor
@@ -65,8 +65,8 @@ class DescriptionFile:
                 file and field and says what would be right.
         """
         try:
-            data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+            data = load_yaml(path, RobotError)
+        except (OSError, RobotError) as error:
             line = " ".join(str(error).split())
             raise RobotError(f"{path}: cannot be read as a robot description ({line})") from error
         try:

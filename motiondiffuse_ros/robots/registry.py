@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from motiondiffuse_ros.errors import RobotError
+from motiondiffuse_ros.input_file import is_file
 from motiondiffuse_ros.robots.description_file import DescriptionFile, shipped_descriptions
 from motiondiffuse_ros.robots.humanoid import describe_humanoid
 from motiondiffuse_ros.robots.robot import Robot, load_robot
@@ -25,7 +26,7 @@ def robot_refusal(name: str) -> str:
     if not _is_path(name):
         known = ", ".join(available_robots())
         return f"unknown robot '{name}'; the robots are {known}, or the path of a YAML description"
-    if not Path(name).expanduser().is_file():
+    if not is_file(_path(name)):
         return f"no robot description at {name}; it is a YAML file as docs/robots.md shows"
     return ""
 
@@ -42,7 +43,7 @@ def get_robot(name: str) -> Robot:
     """
     if refusal := robot_refusal(name):
         raise RobotError(refusal)
-    return _load(str(Path(name).expanduser().resolve()) if _is_path(name) else name)
+    return _load(str(_path(name).resolve()) if _is_path(name) else name)
 
 
 @cache
@@ -51,6 +52,13 @@ def _load(name: str) -> Robot:
         return load_robot(describe_humanoid())
     path = Path(name) if _is_path(name) else shipped_descriptions()[name]
     return load_robot(DescriptionFile.read(path).describe(name))
+
+
+def _path(name: str) -> Path:
+    try:
+        return Path(name).expanduser()
+    except RuntimeError:  # the home of somebody who has none
+        return Path(name)
 
 
 def _is_path(name: str) -> bool:
