@@ -80,12 +80,15 @@ def trajectory_from_messages(
     """Read both halves of a trajectory.
 
     Raises:
-        InputError: If there are no points, their times differ or do not increase, or positions,
-            velocities or root poses are missing, of the wrong size or not finite.
+        InputError: If there are not two points, their times differ or do not increase from 0, a
+            joint is named twice, or positions, velocities or root poses are missing, of the wrong size,
+            not finite or no rotations.
     """
     times = np.array([to_seconds(point.time_from_start) for point in joints.points])
-    if times.size == 0 or not (np.diff(times) > 0.0).all():
-        raise InputError("a trajectory needs points of strictly increasing times")
+    if times.size < 2 or times[0] < 0.0 or not (np.diff(times) > 0.0).all():
+        raise InputError("a trajectory needs two points or more, of increasing times from 0")
+    if len(set(joints.joint_names)) < len(joints.joint_names):
+        raise InputError("a trajectory names a joint twice")
     if [point.time_from_start for point in root.points] != [
         point.time_from_start for point in joints.points
     ]:
@@ -101,9 +104,7 @@ def trajectory_from_messages(
         positions=_table([point.positions for point in joints.points], shape, "positions"),
         velocities=_table([point.velocities for point in joints.points], shape, "velocities"),
         root_position=_vectors([pose.translation for pose in poses]),
-        root_orientation=_finite(
-            np.array([(q.w, q.x, q.y, q.z) for q in (pose.rotation for pose in poses)]), "root"
-        ),
+        root_orientation=_unit([pose.rotation for pose in poses]),
         root_linear_velocity=_vectors([twist.linear for twist in twists]),
         root_angular_velocity=_vectors([twist.angular for twist in twists]),
     )
@@ -140,6 +141,15 @@ def vector_to_message(xyz: np.ndarray) -> Vector3:
 
 def _vectors(messages: list[Vector3]) -> np.ndarray:
     return _finite(np.array([(v.x, v.y, v.z) for v in messages]), "root")
+
+
+def _unit(messages: list[Quaternion]) -> np.ndarray:
+    values = _finite(np.array([(q.w, q.x, q.y, q.z) for q in messages]), "root")
+    with np.errstate(over="ignore"):
+        norms = np.linalg.norm(values, axis=1)
+    if (np.abs(norms - 1.0) > 1e-3).any():
+        raise InputError("every orientation of the root must be a unit quaternion")
+    return values
 
 
 def _table(rows: Sequence[Sequence[float]], shape: tuple[int, int], what: str) -> np.ndarray:
