@@ -17,6 +17,11 @@ class AttentionContext:
     def __init__(self, keys: Tensor | None, values: Tensor, mask: Tensor | None) -> None:
         self.keys, self.values, self.mask = keys, values, mask
 
+    def to(self, dtype: torch.dtype) -> AttentionContext:
+        """Return it with keys and values of another type."""
+        keys = None if self.keys is None else self.keys.to(dtype)
+        return AttentionContext(keys, self.values.to(dtype), self.mask)
+
     def expand(self, index: Tensor) -> AttentionContext:
         """Select rows of the batch."""
         return AttentionContext(
@@ -24,6 +29,18 @@ class AttentionContext:
             self.values[index],
             None if self.mask is None else self.mask[index],
         )
+
+    def beside(self, other: AttentionContext) -> AttentionContext:
+        """Return these rows of the batch, then those of another as long."""
+        return AttentionContext(
+            _joined(self.keys, other.keys),
+            torch.cat([self.values, other.values]),
+            _joined(self.mask, other.mask),
+        )
+
+
+def _joined(one: Tensor | None, other: Tensor | None) -> Tensor | None:
+    return None if one is None or other is None else torch.cat([one, other])
 
 
 class Attention(nn.Module):
@@ -46,7 +63,11 @@ class Attention(nn.Module):
     def context(self, x: Tensor, mask: Tensor) -> AttentionContext:
         """Summarise a sequence x [B, L, C] with mask [B, L] (true on tokens)."""
         x = self.context_norm(x)
-        keys, values = self._split(self.key(x)), self._split(self.value(x))
+        return self.summary(self.key(x), self.value(x), mask)
+
+    def summary(self, keys: Tensor, values: Tensor, mask: Tensor) -> AttentionContext:
+        """Summarise keys and values [B, L, width] with mask [B, L]."""
+        keys, values = self._split(keys), self._split(values)
         if self.kind == "full":
             return AttentionContext(keys, values, mask)
         keys = keys.masked_fill(~mask[:, None, :, None], _MASKED).softmax(dim=2)
@@ -54,7 +75,11 @@ class Attention(nn.Module):
 
     def forward(self, x: Tensor, context: AttentionContext) -> Tensor:
         """Return what x [B, N, width] reads from a context, [B, N, width]."""
-        queries = self._split(self.query(self.norm(x)))
+        return self.read(self.query(self.norm(x)), context)
+
+    def read(self, queries: Tensor, context: AttentionContext) -> Tensor:
+        """Return what queries [B, N, width] read from a context, [B, N, width]."""
+        queries = self._split(queries)
         if context.keys is None:
             y = queries.softmax(dim=-1) @ context.values
         else:

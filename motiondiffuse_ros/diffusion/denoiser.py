@@ -29,6 +29,14 @@ class Conditioning:
         """Select rows of the batch (with repeats)."""
         return Conditioning(tuple(c.expand(index) for c in self.contexts), self.pooled[index])
 
+    def beside(self, other: Conditioning) -> Conditioning:
+        """Return these rows of the batch, then those of another."""
+        contexts = zip(self.contexts, other.contexts, strict=True)
+        return Conditioning(
+            tuple(own.beside(others) for own, others in contexts),
+            torch.cat([self.pooled, other.pooled]),
+        )
+
 
 class StylizationBlock(nn.Module):
     """Scale and shift by the time and text embedding, then project (eq. 9)."""

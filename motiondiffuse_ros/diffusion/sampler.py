@@ -14,6 +14,7 @@ from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.precision import check_precision, use_bf16
+from motiondiffuse_ros.diffusion.prepared import prepared
 from motiondiffuse_ros.diffusion.process import (
     SCHEDULERS,
     denoising_steps,
@@ -248,11 +249,15 @@ def _guided(
 ) -> Tensor:
     """Return the prediction under classifier-free guidance."""
     scale = config.guidance_at(step / denoiser.config.train_steps)
-    steps = torch.full((len(noisy),), step, device=noisy.device)
     bf16 = use_bf16(config.precision, noisy.device)
-    with torch.autocast(noisy.device.type, torch.bfloat16, enabled=bf16):
-        conditional = denoiser(noisy, steps, lengths, condition)
-        if scale == 1.0:
-            return conditional
-        free = denoiser(noisy, steps, lengths, unconditional)
+    predict = prepared(denoiser, torch.bfloat16 if bf16 else torch.float32)
+    if scale == 1.0:
+        return predict(noisy, step, lengths, condition)
+    both = predict(
+        torch.cat([noisy, noisy]),
+        step,
+        torch.cat([lengths, lengths]),
+        condition.beside(unconditional),
+    )
+    conditional, free = both.chunk(2)
     return free + scale * (conditional - free)

@@ -1,0 +1,211 @@
+"""The denoiser laid out for sampling: the same network in fewer and larger operations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import cast
+from weakref import WeakKeyDictionary
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional as F
+
+from motiondiffuse_ros.diffusion.attention import Attention, AttentionContext, pad_mask
+from motiondiffuse_ros.diffusion.denoiser import (
+    Conditioning,
+    ConvolutionalHead,
+    DecoderLayer,
+    Denoiser,
+    StylizationBlock,
+    step_embedding,
+)
+
+_Linear = tuple[Tensor, Tensor]
+"""Weight and bias."""
+
+
+@dataclass(frozen=True)
+class _Layer:
+    own: _Linear
+    """Queries, keys and values of the self-attention in one."""
+    text_query: _Linear
+    ffn: tuple[_Linear, _Linear]
+    projections: tuple[_Linear, ...]
+    """Of the three stylization blocks."""
+    own_attention: Attention
+    text_attention: Attention
+
+
+class PreparedDenoiser:
+    """A copy of a denoiser's weights in the arithmetic of the sampler.
+
+    Autocast would convert all weights at every step, which takes as long as the products
+    themselves. Scales and shifts of layer norms are merged into what follows them, so that
+    queries, keys and values are one product, and all stylization vectors of a step another.
+    """
+
+    def __init__(self, denoiser: Denoiser, dtype: torch.dtype) -> None:
+        """Copy the weights.
+
+        Args:
+            denoiser: In evaluation mode.
+            dtype: Of the products: float32 or bfloat16. Sums stay float32.
+        """
+        config = denoiser.config
+        self._config, self._dtype = config, dtype
+        self._layers: list[_Layer] = []
+        styles: list[_Linear] = []
+        for layer in denoiser.layers:
+            assert isinstance(layer, DecoderLayer)
+            self._layers.append(self._prepared(layer))
+            styles += [_style(cast("StylizationBlock", block)) for block in layer.styles]
+        self._head = denoiser.head
+        if isinstance(self._head, ConvolutionalHead):
+            head = self._head
+            styles.append(_scale_and_shift(head.style.weight, head.style.bias))
+            self._unpatch = self._cast(_after_norm(denoiser.norm, head.unpatch))
+            self._skip = self._cast(_of(head.skip))
+            self._blocks = [
+                (norm, *self._cast(_of(cast("nn.Conv1d", convolution))))
+                for norm, convolution in zip(head.norms, head.convolutions, strict=True)
+            ]
+            self._out = self._cast(_of(head.out))
+        else:
+            self._out = self._cast(_after_norm(denoiser.norm, self._head.out))
+        self._style_widths = [len(bias) for _, bias in styles]
+        self._styles = self._cast(
+            (torch.cat([w for w, _ in styles]), torch.cat([b for _, b in styles]))
+        )
+        self._patch_in = self._cast(_of(denoiser.patch_in))
+        self._positions = denoiser.positions.detach()
+        self._time_in = denoiser.time_in
+
+    def _prepared(self, layer: DecoderLayer) -> _Layer:
+        own, text = layer.self_attention, layer.cross_attention
+        parts = [
+            _after_norm(own.norm, own.query),
+            _after_norm(own.context_norm, own.key),
+            _after_norm(own.context_norm, own.value),
+        ]
+        merged = torch.cat([w for w, _ in parts]), torch.cat([b for _, b in parts])
+        first, _, second = layer.ffn
+        assert isinstance(first, nn.Linear)
+        assert isinstance(second, nn.Linear)
+        return _Layer(
+            own=self._cast(merged),
+            text_query=self._cast(_after_norm(text.norm, text.query)),
+            ffn=(self._cast(_of(first)), self._cast(_of(second))),
+            projections=tuple(
+                self._cast(_of(cast("StylizationBlock", style).project)) for style in layer.styles
+            ),
+            own_attention=own,
+            text_attention=text,
+        )
+
+    def _cast(self, pair: _Linear) -> _Linear:
+        weight, bias = pair
+        return weight.detach().to(self._dtype), bias.detach().to(self._dtype)
+
+    def __call__(self, x: Tensor, step: int, lengths: Tensor, conditioning: Conditioning) -> Tensor:
+        """Return the prediction for noisy features; see `Denoiser.forward`.
+
+        Args:
+            x: Normalised noisy features [B, T, D].
+            step: Diffusion step of all rows.
+            lengths: Frames that count in each row [B].
+            conditioning: Of B texts.
+        """
+        dtype, patch = self._dtype, self._config.patch_size
+        frames = x.shape[1]
+        frame_mask = pad_mask(lengths, frames)
+        x = F.pad(x * frame_mask[..., None], (0, 0, 0, -frames % patch)).to(dtype)
+        frame_mask = F.pad(frame_mask, (0, -frames % patch))
+        token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
+        tokens = F.linear(x.unflatten(1, (-1, patch)).flatten(2), *self._patch_in)
+        tokens = tokens + self._positions[: tokens.shape[1]]
+        time = self._time_in(step_embedding(torch.tensor([step], device=x.device), tokens.shape[2]))
+        embedding = F.silu(time + conditioning.pooled.float()).to(dtype)
+        styles = iter(F.linear(embedding, *self._styles)[:, None].split(self._style_widths, dim=-1))
+        for layer, text in zip(self._layers, conditioning.contexts, strict=True):
+            self._pass(layer, tokens, token_mask, text, styles)
+        hidden = F.layer_norm(tokens, tokens.shape[-1:]).to(dtype)
+        if not isinstance(self._head, ConvolutionalHead):
+            y = F.linear(hidden, *self._out).unflatten(-1, (patch, -1)).flatten(1, 2)
+            return y[:, :frames].float()
+        hidden = F.linear(hidden, *self._unpatch).unflatten(-1, (patch, -1)).flatten(1, 2)
+        hidden = hidden + F.linear(x, *self._skip)
+        scale, shift = next(styles).chunk(2, dim=-1)
+        hidden = torch.addcmul(shift, hidden, scale).float()
+        for norm, weight, bias in self._blocks:
+            y = (F.silu(norm(hidden), inplace=True) * frame_mask[..., None]).to(dtype)
+            y = F.conv1d(y.transpose(1, 2), weight, bias, padding=weight.shape[-1] // 2)
+            hidden += y.transpose(1, 2)
+        return F.linear(hidden.to(dtype), *self._out)[:, :frames].float()
+
+    def _pass(
+        self,
+        layer: _Layer,
+        tokens: Tensor,
+        mask: Tensor,
+        text: AttentionContext,
+        styles: Iterator[Tensor],
+    ) -> None:
+        """Add to the tokens what one decoder layer makes of them."""
+        dtype, width = self._dtype, tokens.shape[2]
+        own, cross = layer.own_attention, layer.text_attention
+        z = F.layer_norm(tokens, (width,)).to(dtype)
+        query, key, value = F.linear(z, *layer.own).chunk(3, dim=-1)
+        y = own.read(query, own.summary(key, value, mask))
+        tokens += self._styled(y, next(styles), layer.projections[0])
+        z = F.layer_norm(tokens, (width,)).to(dtype)
+        y = cross.read(F.linear(z, *layer.text_query), text.to(dtype))
+        tokens += self._styled(y, next(styles), layer.projections[1])
+        first, second = layer.ffn
+        y = F.linear(F.gelu(F.linear(tokens.to(dtype), *first)), *second)
+        tokens += self._styled(y, next(styles), layer.projections[2])
+
+    def _styled(self, y: Tensor, style: Tensor, projection: _Linear) -> Tensor:
+        scale, shift = style.chunk(2, dim=-1)
+        z = torch.addcmul(shift, F.layer_norm(y, y.shape[-1:]), scale)
+        return F.linear(F.silu(z, inplace=True), *projection)
+
+
+_KEPT: WeakKeyDictionary[Denoiser, tuple[object, PreparedDenoiser]] = WeakKeyDictionary()
+
+
+def prepared(denoiser: Denoiser, dtype: torch.dtype) -> PreparedDenoiser:
+    """Return a denoiser laid out for sampling; made anew only if its weights have changed."""
+    state = (dtype, *((p.data_ptr(), p._version) for p in denoiser.parameters()))
+    kept = _KEPT.get(denoiser)
+    if kept is None or kept[0] != state:
+        kept = (state, PreparedDenoiser(denoiser, dtype))
+        _KEPT[denoiser] = kept
+    return kept[1]
+
+
+def _of(linear: nn.Linear | nn.Conv1d) -> _Linear:
+    assert linear.bias is not None
+    return linear.weight, linear.bias
+
+
+def _after_norm(norm: nn.LayerNorm, linear: nn.Linear) -> _Linear:
+    """Return the linear layer that does to plainly normalised input what norm and layer do."""
+    return linear.weight * norm.weight, linear.bias + linear.weight @ norm.bias
+
+
+def _scale_and_shift(weight: Tensor, bias: Tensor) -> _Linear:
+    """Return the layer whose first half is 1 + the scale."""
+    width = len(bias) // 2
+    return weight, bias + (torch.arange(len(bias), device=bias.device) < width)
+
+
+def _style(block: StylizationBlock) -> _Linear:
+    """Return the layer whose halves scale and shift what is normalised without weights."""
+    weight, bias = _scale_and_shift(block.embedding.weight, block.embedding.bias)
+    gain, offset = block.norm.weight, block.norm.bias
+    (scale_w, shift_w), (scale_b, shift_b) = weight.chunk(2), bias.chunk(2)
+    return (
+        torch.cat([gain[:, None] * scale_w, shift_w + offset[:, None] * scale_w]),
+        torch.cat([gain * scale_b, shift_b + offset * scale_b]),
+    )
