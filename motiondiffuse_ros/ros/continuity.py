@@ -53,20 +53,25 @@ class Continuity:
         self._planner, self._reference, self._clock = planner, reference, clock
         self._pace: float | None = None
 
-    def seam(self, request: MotionRequest) -> Seam | None:
-        """Return where a plan for a request is to join; None if nothing is executed."""
+    def seam(self, request: MotionRequest, at: Time | None = None) -> Seam | None:
+        """Return where a plan for a request is to join; None if nothing is executed.
+
+        Args:
+            request: Of which it is known how long a plan takes.
+            at: Not before this time, if that can be met; None = as soon as possible.
+        """
         resets = self._reference.resets
-        playing, robot = self._reference.playing, get_robot(request.robot)
-        if playing is None or self._pace is None:
+        latest, robot = self._reference.playing, get_robot(request.robot)
+        if latest is None or self._pace is None:
             return None
-        if playing.states.trajectory.joint_names != robot.joint_names:
+        if latest.states.trajectory.joint_names != robot.joint_names:
             return None
         expected = RESERVE * self._pace * _work(request) + SWITCH
-        time = max(
-            self._clock.now() + Duration(nanoseconds=round(expected * 1e9)),
-            playing.start,
-            key=lambda t: t.nanoseconds,
-        )
+        time = self._clock.now() + Duration(nanoseconds=round(expected * 1e9))
+        if at is not None:
+            time = _later(time, at)
+        playing = latest.at(time)
+        time = _later(time, playing.start)
         elapsed = playing.elapsed(time)
         states = playing.states
         lead_in = states.motion_up_to(robot, elapsed, LEAD_IN, self._planner.fps)
@@ -90,11 +95,16 @@ class Continuity:
         time = seam.time
         for _ in range(_ATTEMPTS):
             time = self._clock.now() + Duration(nanoseconds=round(reserve * 1e9))
-            plan = self._planner.restarted(plan, seam.playing.states.at(seam.playing.elapsed(time)))
+            playing = (self._reference.playing or seam.playing).at(time)
+            plan = self._planner.restarted(plan, playing.states.at(playing.elapsed(time)))
             if self._clock.now().nanoseconds <= time.nanoseconds:
                 break
             reserve *= 2.0
         return plan, time
+
+
+def _later(one: Time, other: Time) -> Time:
+    return max(one, other, key=lambda time: time.nanoseconds)
 
 
 def _work(request: MotionRequest) -> float:

@@ -14,17 +14,19 @@ from rclpy.action.server import ActionServer, CancelResponse, ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.subscription import Subscription
+from rclpy.time import Time
 from std_msgs.msg import String
 
 from motiondiffuse_ros.action import GenerateMotion
 from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
+from motiondiffuse_ros.pieces import split
 from motiondiffuse_ros.planner import Plan, Planner, Progress
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.continuity import Continuity
-from motiondiffuse_ros.ros.conversions import request_from_message
+from motiondiffuse_ros.ros.conversions import plan_to_message, request_from_message
 from motiondiffuse_ros.ros.diagnostics import Diagnostics
 from motiondiffuse_ros.ros.parameter_spec import Parameters
 from motiondiffuse_ros.ros.parameters import PLANNER_PARAMETERS, complete, planner_config
@@ -34,6 +36,7 @@ from motiondiffuse_ros.ros.present_joints import PresentJoints
 from motiondiffuse_ros.ros.qos import COMMANDS
 from motiondiffuse_ros.ros.spinning import run_node
 from motiondiffuse_ros.ros.steady import create_steady_timer
+from motiondiffuse_ros.ros.streaming import Published, plan_in_pieces, whole
 
 HEARTBEAT = 0.2
 """Period of the timer that ends withdrawn goals before they are started [s]."""
@@ -110,7 +113,9 @@ class MotionDiffuseNode(LifecycleNode):
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Take work."""
         super().on_activate(state)
-        self._queue = PlanningQueue(self._plan, lambda: self.settings["preempt"])
+        self._queue = PlanningQueue(
+            self._plan, lambda: self.settings["preempt"] or self.settings["horizon"] > 0.0
+        )
         if not self._inputs:
             self._inputs = self._create_inputs()
         self._health.set("ok", "ready")
@@ -201,10 +206,35 @@ class MotionDiffuseNode(LifecycleNode):
         progress: Callable[[Progress], None],
         cancelled: Callable[[], bool],
     ) -> MotionPlan:
-        """Plan and publish; runs in the planning thread."""
+        """Plan and publish, piece by piece if so set; runs in the planning thread."""
+        assert self._configured is not None, "deactivate ends this thread before cleanup"
+        made = plan_in_pieces(
+            split(request, self.settings["horizon"]),
+            self._plan_piece,
+            progress=progress,
+            cancelled=cancelled,
+            drop=self._configured.publisher.reference.forget_what_follows,
+        )
+        first = made[0].message
+        if len(made) == 1:
+            return first
+        plan = whole(request, made, track=self.settings["track"])
+        self._save(plan)
+        return plan_to_message(plan, first.header, first.plan_id)
+
+    def _plan_piece(
+        self,
+        request: MotionRequest,
+        follows: Time | None,
+        *,
+        progress: Callable[[Progress], None],
+        cancelled: Callable[[], bool],
+    ) -> Published:
+        """Plan and publish one piece, or all of a request."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
         planner, continuity = self._configured.planner, self._configured.continuity
-        seam = continuity.seam(request) if self.settings["continuity"] else None
+        continues = follows is not None or self.settings["continuity"]
+        seam = continuity.seam(request, follows) if continues else None
         plan = planner.plan(
             request,
             start=None if seam is None else seam.start,
@@ -227,7 +257,7 @@ class MotionDiffuseNode(LifecycleNode):
             f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
             f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)
         )
-        return message
+        return Published(plan, message, Time.from_msg(message.header.stamp))
 
     def _save(self, plan: Plan) -> None:
         """Write the plan's files, if wanted; that they cannot be written does not undo a plan."""

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
 from motiondiffuse_ros.execution import EXECUTIONS
+from motiondiffuse_ros.pieces import SHORTEST
 from motiondiffuse_ros.planner import PlannerConfig
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import available_robots, robot_refusal
@@ -84,6 +85,13 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         True, "a plan made while another is executed goes on from that one's motion"
     ),
     "preempt": ParameterSpec(False, "a newer request also ends the planning in work"),
+    "horizon": ParameterSpec(
+        0.0,
+        "longer motions are planned in pieces of this length, and the first is executed while the "
+        f"others are sampled; newer requests then always take over; at least {SHORTEST:g}, "
+        "0 = in one [s]",
+        (0.0, LIMITS.max_seconds),
+    ),
     "joint_states": ParameterSpec(
         "",
         "topic of the robot's joints, where plans start if none is executed; empty = not used",

@@ -45,6 +45,15 @@ class Playing:
             playing = playing.before
         return playing
 
+    def until(self, end: Time, now: Time) -> Playing:
+        """Return what is left if something else takes over: neither past nor what begins later."""
+        playing = self
+        while playing.before is not None and playing.elapsed(end) <= 0.0:
+            playing = playing.before
+        if playing.before is None or playing.elapsed(now) >= 0.0:
+            return Playing(playing.states, playing.start)
+        return Playing(playing.states, playing.start, playing.before.until(playing.start, now))
+
 
 class ReferenceStream:
     """Publishes `~/reference`: the joints that a plan asks for now, until it has ended.
@@ -84,14 +93,19 @@ class ReferenceStream:
 
         Args:
             trajectory: What to stream.
-            at: When its first point is due; the one before goes on until then.
+            at: When its first point is due; those before it go on until then.
         """
         current = self._current
-        before = None if current is None else current.at(self._node.get_clock().now())
-        if before is not None:  # not the whole past
-            before = Playing(before.states, before.start)
+        before = None if current is None else current.until(at, self._node.get_clock().now())
         self._current = Playing(TrajectoryState(trajectory), at, before)
         self._timer.reset()
+
+    def forget_what_follows(self) -> None:
+        """Let what is streamed now come to its own end; what was to take over does not."""
+        current = self._current
+        if current is not None:
+            playing = current.at(self._node.get_clock().now())
+            self._current = Playing(playing.states, playing.start)
 
     def stop(self) -> None:
         """Stop streaming."""
