@@ -85,6 +85,14 @@ class RobotError(InputError):
     code = ErrorCode.INVALID_ROBOT
 
 
+class RecordingError(InputError):
+    """A recording that cannot be read, or that this installation cannot plan again."""
+
+
+class RecordingNotWritten(MotionDiffuseError):
+    """A recording that could not be written; nothing is left under its name."""
+
+
 class SamplingError(MotionDiffuseError):
     """The sampler produced values that are not finite."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from hashlib import sha256
 from importlib.resources import files as package_files
 from pathlib import Path
 from typing import Any
@@ -65,15 +66,21 @@ def read_manifest(
         raise CheckpointError(f"{what} {folder}: {CONFIG_FILE} gives no hashes of its files")
     for name, expected in config["files"].items():
         try:
-            sha256 = file_sha256(folder / name)
+            found = file_sha256(folder / name)
         except OSError as error:
             raise CheckpointError(f"{what} {folder}: {name} is missing") from error
-        if sha256 != expected:
+        if found != expected:
             raise CheckpointError(
                 f"{what} {folder}: {name} is truncated or altered "
-                f"(SHA-256 {sha256[:12]}…, {CONFIG_FILE} says {expected[:12]}…)"
+                f"(SHA-256 {found[:12]}…, {CONFIG_FILE} says {expected[:12]}…)"
             )
     return config
+
+
+def folder_hashes(folder: Path) -> dict[str, str]:
+    """Return the SHA-256 of config.json and of the files that it lists, which were verified."""
+    content = (folder / CONFIG_FILE).read_bytes()
+    return {CONFIG_FILE: sha256(content).hexdigest(), **json.loads(content)["files"]}
 
 
 def save_weights(module: torch.nn.Module, path: Path, dtype: torch.dtype = torch.float16) -> None:

@@ -27,7 +27,7 @@ from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
 from motiondiffuse_ros.execution import EXECUTIONS, NONE, PUBLISH_EXECUTED, execute
 from motiondiffuse_ros.kept import Kept, constraints, path_points
-from motiondiffuse_ros.manifest import shipped
+from motiondiffuse_ros.manifest import folder_hashes, shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
@@ -142,6 +142,21 @@ class Progress:
 
 
 @dataclass(frozen=True, eq=False)
+class Origin:
+    """What a plan was made from, besides the planner: with it the plan can be made again.
+
+    Attributes:
+        given: The request as it came, defaults not filled in.
+        start: What the motion continues.
+        restarts: States from which the plan was started instead, one after the other.
+    """
+
+    given: MotionRequest
+    start: Start
+    restarts: tuple[StartState, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Plan:
     """A motion, checked, as a trajectory for a robot.
 
@@ -158,6 +173,7 @@ class Plan:
         text_match: How well it matches the texts (`selection.text_matches`), -2 to 2; None where
             that cannot be judged.
         scheduler: Sampler that was used.
+        origin: What it was made from.
     """
 
     request: MotionRequest
@@ -171,6 +187,7 @@ class Plan:
     candidate: int
     text_match: float | None
     scheduler: str
+    origin: Origin = field(repr=False)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of plan.json."""
@@ -209,7 +226,12 @@ class Plan:
 
 
 class Planner:
-    """Plans requests with one set of weights."""
+    """Plans requests with one set of weights.
+
+    Attributes:
+        config: How.
+        hashes: SHA-256 of every file of weights, text encoder and critic, as ROOM/FILE.
+    """
 
     def __init__(self, config: PlannerConfig = PlannerConfig()) -> None:
         """Load the weights and their text encoder.
@@ -226,6 +248,7 @@ class Planner:
             weights, config.text_encoder, device=config.device
         )
         self._critic = self._load_critic(weights)
+        self.hashes = self._hashes(weights)
 
     def _load_critic(self, weights: Path) -> Evaluator | None:
         """Return the critic of the weights, if it speaks of the same features and text encoder."""
@@ -235,6 +258,17 @@ class Planner:
         critic = Evaluator.from_pretrained(critic_of(weights), encoder)
         known = critic.representation == self._pipeline.representation.name
         return critic if known else None
+
+    def _hashes(self, weights: Path) -> dict[str, str]:
+        """Return the SHA-256 of every file that has a part in plans, as ROOM/FILE."""
+        encoder = self._pipeline.encoder
+        hashes = {f"text encoder/{encoder.name}": encoder.sha256}
+        rooms = {"weights": weights}
+        if self._critic is not None:
+            rooms["critic"] = critic_of(weights)
+        for room, folder in rooms.items():
+            hashes |= {f"{room}/{name}": sha for name, sha in folder_hashes(folder).items()}
+        return hashes
 
     @property
     def weights_sha256(self) -> str:
@@ -262,7 +296,8 @@ class Planner:
             state,
             accelerations=self.config.accelerations,
         )
-        return replace(plan, motion=motion, trajectory=trajectory)
+        origin = replace(plan.origin, restarts=(*plan.origin.restarts, state))
+        return replace(plan, motion=motion, trajectory=trajectory, origin=origin)
 
     def plan(
         self,
@@ -290,6 +325,7 @@ class Planner:
         request.validate()
         robot = get_robot(request.robot)
         config, start = self.config, start or Start()
+        origin = Origin(request, start)
         request = request.with_defaults(
             duration=request.total_seconds,
             seed=secrets.randbelow(_MAX_DRAWN_SEED),
@@ -328,6 +364,7 @@ class Planner:
             candidate=chosen,
             text_match=match,
             scheduler=config.scheduler,
+            origin=origin,
         )
 
     def _sample(
