@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from time import time_ns
 from typing import Annotated
+from uuid import uuid4
 
 import tyro
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from motiondiffuse_ros.cli.parsing import parse
 from motiondiffuse_ros.edit import Edit, parse_spans
@@ -66,6 +67,8 @@ class Generate:
     """Execute the plan without assistance in simulation: none, verify, or publish_executed."""
     picture: bool = True
     """Also draw motion.gif."""
+    record: Path | None = None
+    """Also record the plan in this MCAP file, for Foxglove and `motiondiffuse replay`."""
     out: Path = Path("out")
     """Folder for the results."""
 
@@ -76,8 +79,8 @@ def main(arguments: Sequence[str]) -> int:
     request = _request(options)
     request.validate()
     # torch loads after the request has been found good
-    from motiondiffuse_ros.planner import Plan, Planner, PlannerConfig
-    from motiondiffuse_ros.render import render_skeleton
+    from motiondiffuse_ros.cli.planning import plan_with_bar, write_plan
+    from motiondiffuse_ros.planner import Planner, PlannerConfig
     from motiondiffuse_ros.robots import get_robot
 
     get_robot(request.robot)
@@ -94,25 +97,13 @@ def main(arguments: Sequence[str]) -> int:
         )
     )
     console = Console()
-    columns = (TextColumn("{task.description:>12}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("text", total=1.0)
-        plan: Plan = planner.plan(
-            request,
-            progress=lambda p: bar.update(task, description=p.stage, completed=p.fraction),
-        )
-    plan.save(options.out)
-    if options.picture:
-        title = " · ".join(s.text for s in request.segments)
-        render_skeleton([plan.motion], options.out / "motion.gif", titles=[title])
-    report = plan.report
-    console.print(
-        f"{report.verdict} (score {report.score:.2f}), seed {plan.seed}, "
-        f"{plan.trajectory.duration:.1f} s, planned in {plan.timings_s['total']:.1f} s"
-    )
-    for reason in (*report.reasons, *plan.trajectory.notes):
-        console.print(f"  {reason}", highlight=False, markup=False)
-    console.print(f"written to {options.out}")
+    plan = plan_with_bar(console, lambda progress: planner.plan(request, progress=progress))
+    write_plan(console, plan, options.out, picture=options.picture)
+    if options.record is not None:
+        from motiondiffuse_ros.ros.plan_recorder import record_without_node
+
+        record_without_node(options.record, planner, plan, str(uuid4()), time_ns())
+        console.print(f"recorded in {options.record}")
     return 0
 
 

@@ -11,6 +11,7 @@ from motiondiffuse_ros.errors import Cancelled, InputError, MotionDiffuseError
 # name -> (what it does, module, function taking the remaining arguments)
 COMMANDS: dict[str, tuple[str, str, str]] = {
     "generate": ("words or a request file to a checked trajectory", "generate", "main"),
+    "replay": ("plan again what was recorded, and compare bit for bit", "replay", "main"),
     "check": ("physics verdict on a BVH or npz file", "check", "main"),
     "corpus": ("build a training corpus; fetch NAME tells where originals are", "corpus", "main"),
     "train": ("train a denoiser on a corpus", "train", "main"),

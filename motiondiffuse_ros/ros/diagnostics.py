@@ -38,6 +38,7 @@ class Diagnostics:
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._level, self._message = "ok", "starting"
         self._values: dict[str, object] = {}
+        self._problems: dict[str, str] = {}
         self._timer = create_steady_timer(node, REPEAT, self.publish)
 
     def set(self, level: str, message: str, **values: object) -> None:
@@ -46,12 +47,23 @@ class Diagnostics:
         self._values |= values
         self.publish()
 
+    def keep(self, what: str, problem: str) -> None:
+        """Report a problem besides whatever is set, until it is replaced by none ("")."""
+        if problem == self._problems.get(what, ""):
+            return
+        self._problems[what] = problem
+        self._values[what] = problem or "ok"
+        self.publish()
+
     def publish(self) -> None:
         """Publish the present status."""
+        problems = [problem for problem in self._problems.values() if problem]
+        level = "warn" if problems and self._level == "ok" else self._level
+        message = "; ".join([self._message, *problems])
         name = self._node.get_fully_qualified_name().lstrip("/")
         self._publisher.publish(
             DiagnosticArray(
                 header=Header(stamp=self._node.get_clock().now().to_msg()),
-                status=[status(name, self._level, self._message, self._values)],
+                status=[status(name, level, message, self._values)],
             )
         )

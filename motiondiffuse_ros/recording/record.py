@@ -1,0 +1,167 @@
+"""`Record`: what a recording holds for planning the same again."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from motiondiffuse_ros.errors import RecordingError
+from motiondiffuse_ros.fields import check_fields
+from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.planner import Origin, Plan, Planner, PlannerConfig
+from motiondiffuse_ros.recording import arrays
+from motiondiffuse_ros.recording.robot_hashes import robot_hashes
+from motiondiffuse_ros.recording.surroundings import surroundings
+from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.robots import get_robot
+
+FORMAT = 1
+_PATHS = ("weights", "text_encoder")
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A plan and what it was made from.
+
+    Attributes:
+        settings: Of the planner.
+        given: The request as it came to the planner.
+        request: With all defaults filled in and the seed drawn.
+        restarts: How many states the plan was started from instead, one after the other.
+        hashes: SHA-256 of weights, text encoder, robot, and critic if it had a part in the choice.
+        surroundings: Code, libraries and machine.
+        threads: Of torch.
+        candidate: Index of the chosen one.
+        joint_names: Of the trajectory.
+        plan: Content of plan.json: report, notes, timings.
+        values: Start, restarts and trajectory as arrays.
+        edited: Content of the motion file that was edited; empty if none was.
+    """
+
+    settings: PlannerConfig
+    given: MotionRequest
+    request: MotionRequest
+    restarts: int
+    hashes: dict[str, str]
+    surroundings: dict[str, str]
+    threads: int
+    candidate: int
+    joint_names: tuple[str, ...] = field(repr=False)
+    plan: dict[str, Any] = field(repr=False)
+    values: dict[str, Array] = field(repr=False)
+    edited: bytes = field(default=b"", repr=False)
+
+    @property
+    def trajectory(self) -> dict[str, Array]:
+        """Arrays of the trajectory by name."""
+        return arrays.within("trajectory", self.values)
+
+    @property
+    def origin(self) -> Origin:
+        """What the plan was made from.
+
+        Raises:
+            RecordingError: If arrays are missing or of a wrong shape.
+        """
+        try:
+            states = (arrays.within(f"restart/{i}", self.values) for i in range(self.restarts))
+            start = arrays.to_start(arrays.within("start", self.values))
+            return Origin(self.given, start, tuple(map(arrays.to_state, states)))
+        except (KeyError, IndexError, ValueError) as error:
+            raise RecordingError(f"the recorded start cannot be read ({error})") from error
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything but arrays and files as JSON types; `from_dict` takes it back."""
+        settings = asdict(self.settings)
+        settings |= {name: settings[name] and str(settings[name]) for name in _PATHS}
+        return {
+            "format": FORMAT,
+            "settings": settings,
+            "given": self.given.to_dict(),
+            "request": self.request.to_dict(),
+            "restarts": self.restarts,
+            "hashes": self.hashes,
+            "surroundings": self.surroundings,
+            "threads": self.threads,
+            "candidate": self.candidate,
+            "joint_names": list(self.joint_names),
+            "plan": self.plan,
+        }
+
+    @classmethod
+    def from_dict(cls, data: Any, values: dict[str, Array], edited: bytes) -> Record:
+        """Build from what `to_dict` returned.
+
+        Raises:
+            RecordingError: If it is of another format, or fields are missing or wrong.
+            RequestError: If the request or a setting is not valid in this version.
+        """
+        version = data.get("format") if isinstance(data, dict) else None
+        if version != FORMAT:
+            raise RecordingError(f"of format {version!r}, this version reads {FORMAT}")
+        try:
+            settings = data["settings"]
+            check_fields(PlannerConfig, settings, "settings of the planner")
+            paths = {name: Path(settings[name]) for name in _PATHS if settings[name]}
+            return cls(
+                settings=PlannerConfig(**{**settings, **paths}),
+                given=MotionRequest.from_dict(data["given"]),
+                request=MotionRequest.from_dict(data["request"]),
+                restarts=int(data["restarts"]),
+                hashes=_texts(data["hashes"]),
+                surroundings=_texts(data["surroundings"]),
+                threads=int(data["threads"]),
+                candidate=int(data["candidate"]),
+                joint_names=tuple(map(str, data["joint_names"])),
+                plan=dict(data["plan"]),
+                values=values,
+                edited=edited,
+            )
+        except (KeyError, TypeError, ValueError) as error:
+            raise RecordingError(f"a field is missing or wrong ({error})") from error
+
+
+def record_of(planner: Planner, plan: Plan) -> Record:
+    """Return the record of a plan that a planner of this process has just made.
+
+    Raises:
+        OSError: If the motion file that was edited is gone.
+    """
+    values = arrays.under("trajectory", arrays.of_trajectory(plan.trajectory))
+    values |= arrays.under("start", arrays.of_start(plan.origin.start))
+    for i, state in enumerate(plan.origin.restarts):
+        values |= arrays.under(f"restart/{i}", arrays.of_state(state))
+    edit = plan.request.edit
+    return Record(
+        settings=_absolute(planner.config),
+        given=plan.origin.given,
+        request=plan.request,
+        restarts=len(plan.origin.restarts),
+        hashes={**hashes_of(planner, plan), **robot_hashes(get_robot(plan.robot))},
+        surroundings=surroundings(),
+        threads=torch.get_num_threads(),
+        candidate=plan.candidate,
+        joint_names=plan.trajectory.joint_names,
+        plan=plan.to_dict(),
+        values=values,
+        edited=b"" if edit is None else Path(edit.motion).read_bytes(),
+    )
+
+
+def hashes_of(planner: Planner, plan: Plan) -> dict[str, str]:
+    """Return the planner's hashes; the critic's only if it had a part in the choice."""
+    judged = plan.text_match is not None and plan.request.candidates != 1
+    return {k: v for k, v in planner.hashes.items() if judged or not k.startswith("critic/")}
+
+
+def _absolute(config: PlannerConfig) -> PlannerConfig:
+    given = {name: getattr(config, name) for name in _PATHS}
+    paths = {name: path.expanduser().resolve() for name, path in given.items() if path is not None}
+    return replace(config, **paths)
+
+
+def _texts(data: Any) -> dict[str, str]:
+    return {str(key): str(value) for key, value in dict(data).items()}
