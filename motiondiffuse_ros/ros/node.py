@@ -31,6 +31,7 @@ from motiondiffuse_ros.ros.diagnostics import Diagnostics
 from motiondiffuse_ros.ros.parameter_spec import Parameters
 from motiondiffuse_ros.ros.parameters import PLANNER_PARAMETERS, complete, planner_config
 from motiondiffuse_ros.ros.plan_publisher import PlanPublisher
+from motiondiffuse_ros.ros.plan_recorder import PlanRecorder
 from motiondiffuse_ros.ros.planning_queue import Job, NotActive, PlanningQueue
 from motiondiffuse_ros.ros.present_joints import PresentJoints
 from motiondiffuse_ros.ros.qos import COMMANDS
@@ -78,6 +79,9 @@ class MotionDiffuseNode(LifecycleNode):
         self._answered = threading.Condition()
         self._health = Diagnostics(self)
         self._health.set("warn", "unconfigured")
+        self._recorder = PlanRecorder(
+            self._health, self.get_logger(), self.get_fully_qualified_name()
+        )
         self._group = MutuallyExclusiveCallbackGroup()
         self._heartbeat = create_steady_timer(self, HEARTBEAT, self._beat)
         if self.settings["autostart"]:
@@ -253,6 +257,7 @@ class MotionDiffuseNode(LifecycleNode):
         message = self._configured.publisher.publish(plan, at)
         if at is not None:  # after publication: its time is set
             self._save(plan)
+        self._recorder.record(self.settings["record_dir"], planner, plan, message)
         self.get_logger().info(
             f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
             f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)

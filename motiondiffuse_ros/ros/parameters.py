@@ -97,6 +97,7 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         "topic of the robot's joints, where plans start if none is executed; empty = not used",
         at_configure=True,
     ),
+    "record_dir": ParameterSpec("", "folder in which each plan is recorded as MCAP; empty = none"),
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
     "steps": ParameterSpec(
         _DEFAULT.steps, "denoising steps of requests that set none", (1, LIMITS.max_steps)
