@@ -67,11 +67,10 @@ class Attention(nn.Module):
 
     def summary(self, keys: Tensor, values: Tensor, mask: Tensor) -> AttentionContext:
         """Summarise keys and values [B, L, width] with mask [B, L]."""
-        keys, values = self._split(keys), self._split(values)
         if self.kind == "full":
-            return AttentionContext(keys, values, mask)
-        keys = keys.masked_fill(~mask[:, None, :, None], _MASKED).softmax(dim=2)
-        return AttentionContext(None, keys.transpose(2, 3) @ values, None)
+            return AttentionContext(self._split(keys), self._split(values), mask)
+        keys = keys.masked_fill(~mask[..., None], _MASKED).softmax(dim=1)
+        return AttentionContext(None, self._split(keys).transpose(2, 3) @ self._split(values), None)
 
     def forward(self, x: Tensor, context: AttentionContext) -> Tensor:
         """Return what x [B, N, width] reads from a context, [B, N, width]."""
@@ -79,12 +78,13 @@ class Attention(nn.Module):
 
     def read(self, queries: Tensor, context: AttentionContext) -> Tensor:
         """Return what queries [B, N, width] read from a context, [B, N, width]."""
-        queries = self._split(queries)
         if context.keys is None:
-            y = queries.softmax(dim=-1) @ context.values
+            queries = queries.unflatten(-1, (self.heads, -1)).softmax(dim=-1)
+            y = queries.transpose(1, 2) @ context.values
         else:
             assert context.mask is not None
             mask = context.mask[:, None, None, :]
+            queries = self._split(queries)
             y = F.scaled_dot_product_attention(queries, context.keys, context.values, mask)
         return y.transpose(1, 2).flatten(2)
 

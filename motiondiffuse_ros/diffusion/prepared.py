@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import cast
 from weakref import WeakKeyDictionary
@@ -13,7 +13,6 @@ from torch.nn import functional as F
 
 from motiondiffuse_ros.diffusion.attention import Attention, AttentionContext, pad_mask
 from motiondiffuse_ros.diffusion.denoiser import (
-    Conditioning,
     ConvolutionalHead,
     DecoderLayer,
     Denoiser,
@@ -107,14 +106,32 @@ class PreparedDenoiser:
         weight, bias = pair
         return weight.detach().to(self._dtype), bias.detach().to(self._dtype)
 
-    def __call__(self, x: Tensor, step: int, lengths: Tensor, conditioning: Conditioning) -> Tensor:
+    def styles(self, steps: Sequence[int], pooled: Tensor) -> Tensor:
+        """Return all stylization vectors [S, B, K] of some steps for some texts.
+
+        Args:
+            steps: Diffusion steps.
+            pooled: `Conditioning.pooled` of B texts.
+        """
+        at = torch.tensor(steps, device=pooled.device)
+        time = self._time_in(step_embedding(at, self._config.width))
+        embedding = F.silu(time[:, None] + pooled.float()).to(self._dtype)
+        return F.linear(embedding, *self._styles)
+
+    def __call__(
+        self,
+        x: Tensor,
+        lengths: Tensor,
+        contexts: Sequence[AttentionContext],
+        styles: Tensor,
+    ) -> Tensor:
         """Return the prediction for noisy features; see `Denoiser.forward`.
 
         Args:
             x: Normalised noisy features [B, T, D].
-            step: Diffusion step of all rows.
             lengths: Frames that count in each row [B].
-            conditioning: Of B texts.
+            contexts: `Conditioning.contexts` of B texts.
+            styles: [B, K] of their step and texts.
         """
         dtype, patch = self._dtype, self._config.patch_size
         frames = x.shape[1]
@@ -124,18 +141,16 @@ class PreparedDenoiser:
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
         tokens = F.linear(x.unflatten(1, (-1, patch)).flatten(2), *self._patch_in)
         tokens = tokens + self._positions[: tokens.shape[1]]
-        time = self._time_in(step_embedding(torch.tensor([step], device=x.device), tokens.shape[2]))
-        embedding = F.silu(time + conditioning.pooled.float()).to(dtype)
-        styles = iter(F.linear(embedding, *self._styles)[:, None].split(self._style_widths, dim=-1))
-        for layer, text in zip(self._layers, conditioning.contexts, strict=True):
-            self._pass(layer, tokens, token_mask, text, styles)
+        pieces = iter(styles[:, None].split(self._style_widths, dim=-1))
+        for layer, text in zip(self._layers, contexts, strict=True):
+            self._pass(layer, tokens, token_mask, text, pieces)
         hidden = F.layer_norm(tokens, tokens.shape[-1:]).to(dtype)
         if not isinstance(self._head, ConvolutionalHead):
             y = F.linear(hidden, *self._out).unflatten(-1, (patch, -1)).flatten(1, 2)
             return y[:, :frames].float()
         hidden = F.linear(hidden, *self._unpatch).unflatten(-1, (patch, -1)).flatten(1, 2)
         hidden = hidden + F.linear(x, *self._skip)
-        scale, shift = next(styles).chunk(2, dim=-1)
+        scale, shift = next(pieces).chunk(2, dim=-1)
         hidden = torch.addcmul(shift, hidden, scale).float()
         for norm, weight, bias in self._blocks:
             y = (F.silu(norm(hidden), inplace=True) * frame_mask[..., None]).to(dtype)

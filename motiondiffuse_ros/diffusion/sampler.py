@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import torch
 from torch import Tensor
@@ -12,9 +11,9 @@ from torch import Tensor
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
+from motiondiffuse_ros.diffusion.guidance import GuidedDenoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.precision import check_precision, use_bf16
-from motiondiffuse_ros.diffusion.prepared import prepared
 from motiondiffuse_ros.diffusion.process import (
     SCHEDULERS,
     denoising_steps,
@@ -129,10 +128,8 @@ def sample(
     generator = torch.Generator().manual_seed(seed)
     x = torch.randn((candidates, frames, denoiser.config.feature_dim), generator=generator)
     predict = WindowedPrediction(
-        partial(_guided, denoiser, config),
+        _guided(denoiser, config, conditioning, unconditional),
         windows,
-        conditioning,
-        unconditional,
         candidates=candidates,
         part_correction=config.part_correction,
         time_correction=config.time_correction,
@@ -177,10 +174,11 @@ def sample_batch(
     shape = (len(lengths), int(lengths.max()), denoiser.config.feature_dim)
     x = torch.randn(shape, generator=generator)
     lengths = lengths.to(denoiser.device)
-    free = unconditional.expand(torch.zeros(len(lengths), dtype=torch.long))
+    guided = _guided(denoiser, config, conditioning, unconditional)
+    rows = torch.arange(len(lengths))
 
     def predict(x: Tensor, step: int) -> Tensor:
-        return _guided(denoiser, config, x, step, lengths, conditioning, free)
+        return guided(x, step, lengths, rows)
 
     return _denoise(predict, x, denoiser, config, generator, (), planted)
 
@@ -241,23 +239,15 @@ def _imagination(
 def _guided(
     denoiser: Denoiser,
     config: SamplerConfig,
-    noisy: Tensor,
-    step: int,
-    lengths: Tensor,
-    condition: Conditioning,
+    conditioning: Conditioning,
     unconditional: Conditioning,
-) -> Tensor:
-    """Return the prediction under classifier-free guidance."""
-    scale = config.guidance_at(step / denoiser.config.train_steps)
-    bf16 = use_bf16(config.precision, noisy.device)
-    predict = prepared(denoiser, torch.bfloat16 if bf16 else torch.float32)
-    if scale == 1.0:
-        return predict(noisy, step, lengths, condition)
-    both = predict(
-        torch.cat([noisy, noisy]),
-        step,
-        torch.cat([lengths, lengths]),
-        condition.beside(unconditional),
+) -> GuidedDenoiser:
+    train_steps = denoiser.config.train_steps
+    return GuidedDenoiser(
+        denoiser,
+        conditioning,
+        unconditional,
+        denoising_steps(config.steps, config.spacing, train_steps),
+        lambda step: config.guidance_at(step / train_steps),
+        bf16=use_bf16(config.precision, denoiser.device),
     )
-    conditional, free = both.chunk(2)
-    return free + scale * (conditional - free)

@@ -10,15 +10,14 @@ import torch
 from torch import Tensor
 
 from motiondiffuse_ros.diffusion.composition import Window
-from motiondiffuse_ros.diffusion.denoiser import Conditioning
 from motiondiffuse_ros.diffusion.imagination import Imagination
 
 _BATCH_ROWS = 16  # bounds memory on long timelines with many candidates
 
 
-Predictor = Callable[[Tensor, int, Tensor, Conditioning, Conditioning], Tensor]
-"""The denoiser under guidance: noisy features [B, T, D], step, lengths [B], the condition of the
-texts and of no text, to the prediction [B, T, D]."""
+Predictor = Callable[[Tensor, int, Tensor, Tensor], Tensor]
+"""The denoiser under guidance: noisy features [B, T, D], step, lengths [B] and the windows whose
+texts they are for [B], to the prediction [B, T, D]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +49,6 @@ class WindowedPrediction:
         self,
         predict: Predictor,
         windows: Sequence[Window],
-        conditioning: Conditioning,
-        unconditional: Conditioning,
         *,
         candidates: int,
         part_correction: float,
@@ -64,8 +61,6 @@ class WindowedPrediction:
         Args:
             predict: The denoiser.
             windows: Of the timeline; their weights sum to one.
-            conditioning: A row for each window.
-            unconditional: One row, of the empty text.
             candidates: Independent samples.
             part_correction: λ₁, 0 to 1.
             time_correction: λ₂, 0 to 1.
@@ -83,7 +78,6 @@ class WindowedPrediction:
         # windows of like length share a batch
         rows.sort(key=lambda row: len(self._weights[row[0]]))
         self._batches = [rows[i : i + _BATCH_ROWS] for i in range(0, len(rows), _BATCH_ROWS)]
-        self._conditioning, self._unconditional = conditioning, unconditional
         self._pulls = _pulls(windows, part_correction, time_correction, device)
 
     def __call__(self, x: Tensor, step: int) -> Tensor:
@@ -127,13 +121,7 @@ class WindowedPrediction:
                 own = None if added is None else added[w]
                 if own is not None:
                     row[: len(self._weights[w])] += own[c]
-            prediction = self._predict(
-                noisy,
-                step,
-                lengths,
-                self._conditioning.expand(index),
-                self._unconditional.expand(torch.zeros_like(index)),
-            )
+            prediction = self._predict(noisy, step, lengths, index)
             for row, (w, c) in zip(prediction, batch, strict=True):
                 yield w, c, row[: len(self._weights[w])]
 

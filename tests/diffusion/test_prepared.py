@@ -22,6 +22,13 @@ def _filled(model: Denoiser) -> Denoiser:
     return model.eval()
 
 
+def _predict(model: Denoiser, dtype: torch.dtype, x, conditioning):
+    ready = prepared(model, dtype)
+    (styles,) = ready.styles([STEP], conditioning.pooled)
+    contexts = [context.to(dtype) for context in conditioning.contexts]
+    return INSIDE * ready(x, LENGTHS, contexts, styles)
+
+
 def _inputs(model: Denoiser):
     torch.manual_seed(1)
     mask = torch.arange(7)[None] < torch.tensor([7, 4, 2])[:, None]
@@ -37,17 +44,17 @@ def test_it_predicts_the_same(head_width: int, attention: str):
     model = _filled(Denoiser(replace(SMALL, head_width=head_width, attention=attention)))
     x, conditioning = _inputs(model)
     expected = INSIDE * model(x, torch.full((3,), STEP), LENGTHS, conditioning)
-    exact = INSIDE * prepared(model, torch.float32)(x, STEP, LENGTHS, conditioning)
+    exact = _predict(model, torch.float32, x, conditioning)
     torch.testing.assert_close(exact, expected, rtol=1e-4, atol=1e-4)
-    rough = INSIDE * prepared(model, torch.bfloat16)(x, STEP, LENGTHS, conditioning)
+    rough = _predict(model, torch.bfloat16, x, conditioning)
     assert (rough - expected).std() < 0.03 * expected.std()
 
 
 @torch.no_grad()
 def test_it_follows_weights_that_change(denoiser: Denoiser):
     x, conditioning = _inputs(denoiser)
-    before = prepared(denoiser, torch.float32)
-    assert prepared(denoiser, torch.float32) is before
+    before = _predict(denoiser, torch.float32, x, conditioning)
+    kept = prepared(denoiser, torch.float32)
+    assert prepared(denoiser, torch.float32) is kept
     _filled(denoiser)
-    after = prepared(denoiser, torch.float32)(x, STEP, LENGTHS, conditioning)
-    assert not torch.allclose(after, before(x, STEP, LENGTHS, conditioning))
+    assert not torch.allclose(_predict(denoiser, torch.float32, x, conditioning), before)

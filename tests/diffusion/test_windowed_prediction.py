@@ -6,7 +6,6 @@ import torch
 
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
 from motiondiffuse_ros.diffusion.constraints import KeptFeatures
-from motiondiffuse_ros.diffusion.denoiser import Conditioning
 from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
 from motiondiffuse_ros.motion.features import PoseState
 
@@ -14,19 +13,13 @@ STATE = PoseState()
 FRAMES = 60
 
 
-def _constant(noisy, step, lengths, condition, unconditional):
-    return condition.pooled[:, :1, None].expand_as(noisy)
-
-
 def _predict(texts, values, *, part_correction=0.0, time_correction=0.0, frames=FRAMES):
     windows = compose(tuple(texts), frames, STATE, max_frames=196, blend_frames=10)
     of_text = dict(zip([t.text for t in texts], values, strict=True))
-    pooled = torch.tensor([[of_text[w.text]] for w in windows])
+    constants = torch.tensor([of_text[w.text] for w in windows])
     predict = WindowedPrediction(
-        _constant,
+        lambda noisy, step, lengths, rows: constants[rows][:, None, None].expand_as(noisy),
         windows,
-        Conditioning((), pooled),
-        Conditioning((), torch.zeros(1, 1)),
         candidates=2,
         part_correction=part_correction,
         time_correction=time_correction,
