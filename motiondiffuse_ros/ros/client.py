@@ -16,7 +16,7 @@ from rclpy.node import Node
 
 from motiondiffuse_ros.action import GenerateMotion
 from motiondiffuse_ros.msg import MotionRequest
-from motiondiffuse_ros.ros.qos import LATCHED
+from motiondiffuse_ros.ros.qos import GOALS, LATCHED
 
 Feedback = GenerateMotion.Feedback
 Alive = Callable[[], bool]
@@ -48,7 +48,13 @@ class MotionClient:
         self.node = Node("motiondiffuse_client", context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
-        self._action = ActionClient(self.node, GenerateMotion, "motiondiffuse/generate_motion")
+        self.action = ActionClient(
+            self.node,
+            GenerateMotion,
+            "motiondiffuse/generate_motion",
+            goal_service_qos_profile=GOALS,
+            result_service_qos_profile=GOALS,
+        )
         self._execution = DiagnosticStatus()
         self.health = DiagnosticStatus()
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._on_health, 10)
@@ -98,10 +104,10 @@ class MotionClient:
         """
 
         def answered() -> bool:
-            return self._action.server_is_ready() or self.health.level == DiagnosticStatus.ERROR
+            return self.action.server_is_ready() or self.health.level == DiagnosticStatus.ERROR
 
         self.wait(answered, timeout, "the node motiondiffuse")
-        if not self._action.server_is_ready():
+        if not self.action.server_is_ready():
             raise NotConfigured(self.health.message)
 
     def generate(
@@ -122,7 +128,7 @@ class MotionClient:
         Raises:
             Unreachable: If the node does not answer within `timeout` seconds.
         """
-        accepted = self._action.send_goal_async(
+        accepted = self.action.send_goal_async(
             GenerateMotion.Goal(request=request),
             feedback_callback=lambda message: on_feedback(message.feedback),
         )

@@ -34,7 +34,7 @@ from motiondiffuse_ros.ros.plan_publisher import PlanPublisher
 from motiondiffuse_ros.ros.plan_recorder import PlanRecorder
 from motiondiffuse_ros.ros.planning_queue import Job, NotActive, PlanningQueue
 from motiondiffuse_ros.ros.present_joints import PresentJoints
-from motiondiffuse_ros.ros.qos import COMMANDS
+from motiondiffuse_ros.ros.qos import COMMANDS, GOALS
 from motiondiffuse_ros.ros.spinning import run_node
 from motiondiffuse_ros.ros.steady import create_steady_timer
 from motiondiffuse_ros.ros.streaming import Published, plan_in_pieces, whole
@@ -175,6 +175,8 @@ class MotionDiffuseNode(LifecycleNode):
                 self._execute,
                 callback_group=ReentrantCallbackGroup(),
                 cancel_callback=lambda goal: CancelResponse.ACCEPT,
+                goal_service_qos_profile=GOALS,
+                result_service_qos_profile=GOALS,
             ),
         ]
 

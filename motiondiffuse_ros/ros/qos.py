@@ -27,3 +27,11 @@ COMMANDS = QoSProfile(
     durability=DurabilityPolicy.VOLATILE,
 )
 """Text and requests: the default of `ros2 topic pub`."""
+
+GOALS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1000,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
+"""Goals and their results: with the usual depth of 10, more at once are lost without an answer."""

@@ -8,15 +8,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from lifecycle_msgs.msg import State, Transition
-from lifecycle_msgs.srv import ChangeState, GetState
-from rcl_interfaces.srv import SetParameters
-from rclpy.parameter import Parameter
 from ros_graph import ANSWER, FAST, START
+from ros_operator import Operator
 
 from motiondiffuse_ros.errors import ErrorCode
 from motiondiffuse_ros.msg import MotionRequest, MotionSegment
@@ -30,32 +27,6 @@ WALK = MotionRequest(segments=[MotionSegment(text="a person walks", start=0.0, e
 pytestmark = pytest.mark.skipif(
     not (shipped_weights() / "config.json").is_file(), reason="no weights are shipped yet"
 )
-
-
-class Operator(MotionClient):
-    """Somebody who steers the node's lifecycle."""
-
-    def call(self, kind, name: str, request) -> Any:
-        service = self.node.create_client(kind, f"/motiondiffuse/{name}")
-        self.wait(service.service_is_ready, START, name)
-        future = service.call_async(request)
-        self.wait(future.done, ANSWER, f"an answer of {name}")
-        return future.result()
-
-    def change(self, transition: int) -> bool:
-        request = ChangeState.Request(transition=Transition(id=transition))
-        return self.call(ChangeState, "change_state", request).success
-
-    def state(self) -> int:
-        return self.call(GetState, "get_state", GetState.Request()).current_state.id
-
-    def set(self, name: str, value) -> str:
-        """Set a parameter; returns the reason of a refusal, or nothing."""
-        parameter = Parameter(name, value=value).to_parameter_msg()
-        answer = self.call(
-            SetParameters, "set_parameters", SetParameters.Request(parameters=[parameter])
-        )
-        return "" if answer.results[0].successful else answer.results[0].reason
 
 
 @contextmanager
