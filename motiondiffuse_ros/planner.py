@@ -43,7 +43,7 @@ from motiondiffuse_ros.robots import (
     path_scale,
 )
 from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
-from motiondiffuse_ros.selection import choose, text_matches
+from motiondiffuse_ros.selection import eligible, text_matches
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -449,16 +449,17 @@ class Planner:
 
         def judge() -> tuple[int, float | None, Motion, Report]:
             matches = self._matches(motions, texts)
-            judged: list[tuple[Motion, Report]] = []
-            for motion in motions:
+            judged: dict[int, tuple[Motion, Report]] = {}
+            able = eligible(matches)
+            for i in able:
                 if repairs:
-                    repaired = repair(motion, assessed)
-                    judged.append((repaired.motion, repaired.report))
+                    repaired = repair(motions[i], assessed)
+                    judged[i] = repaired.motion, repaired.report
                 else:
-                    judged.append((motion, assessed(motion)))
-                preview = judged[-1][1].verdict
-                watch.advance("physics", 0.6 * len(judged) / len(motions), preview)
-            best = choose(matches, [report.score for _, report in judged])
+                    judged[i] = motions[i], assessed(motions[i])
+                preview = judged[i][1].verdict
+                watch.advance("physics", 0.6 * len(judged) / len(able), preview)
+            best = max(able, key=lambda i: judged[i][1].score)
             motion, report = judged[best]
             if self.config.execution != NONE:
                 motion, report = execute(

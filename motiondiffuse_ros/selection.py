@@ -58,6 +58,17 @@ def text_matches(
     return [float(row @ frames / frames.sum()) for row in lead]
 
 
+def eligible(matches: Sequence[float | None]) -> list[int]:
+    """Return the indices of the candidates that match well enough to be chosen.
+
+    Args:
+        matches: `text_matches`.
+    """
+    known = [match for match in matches if match is not None]
+    least = max(known) - MATCH_MARGIN if known else None
+    return [i for i, m in enumerate(matches) if least is None or m is None or m >= least]
+
+
 def choose(matches: Sequence[float | None], scores: Sequence[float]) -> int:
     """Return the index of the most plausible among the candidates that match well.
 
@@ -65,7 +76,4 @@ def choose(matches: Sequence[float | None], scores: Sequence[float]) -> int:
         matches: `text_matches`.
         scores: Plausibility of each, higher is better.
     """
-    known = [match for match in matches if match is not None]
-    least = max(known) - MATCH_MARGIN if known else None
-    good = [i for i, m in enumerate(matches) if least is None or m is None or m >= least]
-    return max(good, key=lambda i: scores[i])
+    return max(eligible(matches), key=lambda i: scores[i])
