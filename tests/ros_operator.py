@@ -7,17 +7,24 @@ from typing import Any
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.srv import SetParameters
+from rclpy.client import Client
 from rclpy.parameter import Parameter
 from ros_graph import ANSWER, START
 
-from motiondiffuse_ros.ros.client import MotionClient
+from motiondiffuse_ros.ros.client import Alive, MotionClient
 
 
 class Operator(MotionClient):
     """Somebody who steers the node's lifecycle."""
 
+    def __init__(self, alive: Alive = lambda: True) -> None:
+        super().__init__(alive)
+        self._services: dict[str, Client] = {}
+
     def call(self, kind, name: str, request) -> Any:
-        service = self.node.create_client(kind, f"/motiondiffuse/{name}")
+        if name not in self._services:  # each one that is made stays in the other side's memory
+            self._services[name] = self.node.create_client(kind, f"/motiondiffuse/{name}")
+        service = self._services[name]
         self.wait(service.service_is_ready, START, name)
         future = service.call_async(request)
         self.wait(future.done, ANSWER, f"an answer of {name}")
