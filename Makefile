@@ -2,7 +2,7 @@
 #   make demo     words -> plan -> simulated humanoid, with real ROS 2 processes; results in out/
 #   make test     the test suite
 #   make lint     ruff and pyright
-#   make bench    the quality table that needs no corpus; benchmarks/ has more
+#   make bench    speed, and the quality table that needs no corpus; benchmarks/ has more
 #   make colcon   build with colcon over the ROS wheels and import the interfaces
 #   make clean    remove everything these targets made
 
@@ -45,6 +45,7 @@ lint: venv
 
 bench: venv
 	mkdir -p $(OUT)
+	$(VENV)/bin/python -m benchmarks.speed --json $(OUT)/speed.json
 	$(VENV)/bin/python -m benchmarks.prompt_probes --json $(OUT)/prompt_probes.json
 
 $(COLCON)/.done: build_tools/colcon_wheels.txt
