@@ -55,7 +55,7 @@ class SamplerConfig:
     guidance_interval: tuple[float, float] = (0.6, 1.0)
     part_correction: float = 0.0
     time_correction: float = 0.5
-    apart_above: float = 0.25
+    apart_above: float = 0.0
     planted_below: float = 0.5
     precision: str = "auto"
 
