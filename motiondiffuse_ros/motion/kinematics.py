@@ -15,6 +15,9 @@ from motiondiffuse_ros.motion.skeleton import CANONICAL
 CONTACT_POSITIONS = tuple(CANONICAL.index(name) - 1 for name in CONTACT_JOINTS)
 """Where the contact joints are among the joints below the root."""
 
+_FRAMES = 4096
+"""At once; every frame takes 6 kB meanwhile."""
+
 
 class PoseStateKinematics:
     """Joint positions and velocities that a pose state's decoded blocks imply."""
@@ -41,6 +44,9 @@ class PoseStateKinematics:
         Args:
             features: Denormalised pose states [N, 269].
         """
+        return torch.cat([self._positions(piece) for piece in features.split(_FRAMES)])
+
+    def _positions(self, features: Tensor) -> Tensor:
         columns = features[:, self._rotations].unflatten(-1, (-1, 2, 3)).transpose(-1, -2)
         local = roma.special_gramschmidt(columns.float())
         up = torch.tensor([0.0, 1.0, 0.0])
