@@ -3,12 +3,14 @@
 #   make test     the test suite
 #   make lint     ruff and pyright
 #   make bench    speed, and the quality table that needs no corpus; benchmarks/ has more
+#   make audit    known vulnerabilities of the packages in use
 #   make colcon   build with colcon over the ROS wheels and import the interfaces
 #   make clean    remove everything these targets made
 
 PYTHON ?= python3
 VENV   := .venv
 COLCON := .venv-colcon
+AUDIT  := .venv-audit
 OUT    ?= out
 
 # Left by the Python of another environment with ROS wheels; with them ours cannot import rclpy.
@@ -19,7 +21,7 @@ RECIPE     := pyproject.toml requirements.txt constraints.txt setup.py package.x
               $(wildcard build_tools/*)
 PIP        := $(VENV)/bin/python -m pip --disable-pip-version-check
 
-.PHONY: venv demo test lint bench colcon clean
+.PHONY: venv demo test lint bench audit colcon clean
 
 venv: $(VENV)/.done
 
@@ -48,6 +50,16 @@ bench: venv
 	$(VENV)/bin/python -m benchmarks.speed --json $(OUT)/speed.json
 	$(VENV)/bin/python -m benchmarks.prompt_probes --json $(OUT)/prompt_probes.json
 
+# in an environment of its own: it is no part of what it looks at
+$(AUDIT)/.done:
+	test -x $(AUDIT)/bin/python || $(PYTHON) -m venv $(AUDIT)
+	$(AUDIT)/bin/python -m pip --disable-pip-version-check install "pip-audit>=2.7"
+	touch $@
+
+audit: venv $(AUDIT)/.done
+	$(AUDIT)/bin/python build_tools/audit.py $(AUDIT)/bin/pip-audit \
+	  $$($(VENV)/bin/python -c "import sysconfig; print(sysconfig.get_path('purelib'))")
+
 $(COLCON)/.done: build_tools/colcon_wheels.txt
 	test -x $(COLCON)/bin/python || $(PYTHON) -m venv $(COLCON)
 	$(COLCON)/bin/python -m pip --disable-pip-version-check install -r build_tools/colcon_wheels.txt
@@ -64,7 +76,7 @@ colcon: $(COLCON)/.done
 	   import motiondiffuse_ros as m; print('imported from', m.__file__)"
 
 clean:
-	rm -rf $(VENV) $(COLCON) .colcon build dist out *.egg-info \
+	rm -rf $(VENV) $(COLCON) $(AUDIT) .colcon build dist out *.egg-info \
 	  motiondiffuse_ros/msg motiondiffuse_ros/action motiondiffuse_ros/*.so \
 	  .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

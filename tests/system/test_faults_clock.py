@@ -63,10 +63,12 @@ def ignore(feedback: Feedback) -> None:
 def keeper(graph) -> Iterator[Timekeeper]:
     log = graph / "node.log"
     arguments = ros_arguments(**FAST, use_sim_time=True)
-    with running("motiondiffuse_ros.ros.node", arguments, log) as process:
-        with Timekeeper(lambda: process.poll() is None) as keeper:
-            keeper.wait_for_node(START)
-            yield keeper
+    with (
+        running("motiondiffuse_ros.ros.node", arguments, log) as process,
+        Timekeeper(lambda: process.poll() is None) as keeper,
+    ):
+        keeper.wait_for_node(START)
+        yield keeper
     assert "Traceback" not in log.read_text()
 
 
