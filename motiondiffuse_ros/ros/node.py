@@ -28,6 +28,7 @@ from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.continuity import Continuity
 from motiondiffuse_ros.ros.conversions import plan_to_message, request_from_message
 from motiondiffuse_ros.ros.diagnostics import Diagnostics
+from motiondiffuse_ros.ros.goal_feedback import GoalFeedback
 from motiondiffuse_ros.ros.parameter_spec import Parameters
 from motiondiffuse_ros.ros.parameters import PLANNER_PARAMETERS, complete, planner_config
 from motiondiffuse_ros.ros.plan_publisher import PlanPublisher
@@ -39,8 +40,8 @@ from motiondiffuse_ros.ros.spinning import run_node
 from motiondiffuse_ros.ros.steady import create_steady_timer
 from motiondiffuse_ros.ros.streaming import Published, plan_in_pieces, whole
 
-HEARTBEAT = 0.2
-"""Period of the timer that ends withdrawn goals before they are started [s]."""
+HEARTBEAT = 0.15
+"""Period of the timer that repeats feedback, and ends withdrawn goals not yet started [s]."""
 
 LONGEST_ANSWER = 10.0
 """For which an open goal can keep the node from going down [s]."""
@@ -75,6 +76,7 @@ class MotionDiffuseNode(LifecycleNode):
         self._configured: _Configured | None = None
         self._inputs: list[Subscription | ActionServer] = []
         self._queue: PlanningQueue[MotionPlan] | None = None
+        self._feedback = GoalFeedback()
         self._open_goals = 0
         self._answered = threading.Condition()
         self._health = Diagnostics(self)
@@ -201,6 +203,7 @@ class MotionDiffuseNode(LifecycleNode):
         self.settings.locked = False
 
     def _beat(self) -> None:
+        self._feedback.repeat()
         queue = self._queue
         if queue is not None:
             queue.sweep()
@@ -324,6 +327,7 @@ class MotionDiffuseNode(LifecycleNode):
         try:
             return self._answer(goal)
         finally:
+            self._feedback.end(goal)
             with self._answered:
                 self._open_goals -= 1
                 self._answered.notify_all()
@@ -334,7 +338,7 @@ class MotionDiffuseNode(LifecycleNode):
             request = request_from_message(goal.request.request, robot=self.settings["robot"])
             job = Job[MotionPlan](
                 complete(request, self.settings),
-                progress=lambda progress: goal.publish_feedback(_feedback(progress)),  # pyright: ignore[reportArgumentType]
+                progress=lambda progress: self._feedback.tell(goal, progress),
                 withdrawn=lambda: goal.is_cancel_requested,
             )
             result.plan = self._submit(job).result()
@@ -364,12 +368,6 @@ class MotionDiffuseNode(LifecycleNode):
     def _report_defect(self, error: BaseException) -> None:
         self.get_logger().error("".join(traceback.format_exception(error)))
         self._health.set("error", f"{type(error).__name__}: {error}")
-
-
-def _feedback(progress: Progress) -> GenerateMotion.Feedback:
-    return GenerateMotion.Feedback(
-        stage=progress.stage, fraction=float(progress.fraction), preview=progress.preview
-    )
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -159,3 +159,9 @@ def test_a_subscriber_that_never_reads_holds_nobody_up(operator):
     assert taken == []
     sleeper.destroy_node()
     rclpy.try_shutdown(context=context)
+
+
+def test_a_plan_whose_files_cannot_be_written_is_a_plan_all_the_same(operator):
+    assert operator.set("plan_dir", "/dev/null/plans") == ""
+    assert operator.generate(goal(), ignore, ANSWER).error_code == ErrorCode.SUCCESS
+    assert operator.set("plan_dir", "") == ""

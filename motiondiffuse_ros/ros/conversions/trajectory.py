@@ -81,8 +81,8 @@ def trajectory_from_messages(
 
     Raises:
         InputError: If there are not two points, their times differ or do not increase from 0, a
-            joint is named twice, or positions, velocities or root poses are missing, of the wrong size,
-            not finite or no rotations.
+            joint is named twice, or positions, velocities or root poses are missing, of the wrong
+            size, not finite or no rotations.
     """
     times = np.array([to_seconds(point.time_from_start) for point in joints.points])
     if times.size < 2 or times[0] < 0.0 or not (np.diff(times) > 0.0).all():
