@@ -66,6 +66,7 @@ setup(
         (f"lib/{PACKAGE}", files("scripts")),
         (SHARE, ["package.xml"]),
         *tree("launch"),
+        *tree("security"),
         *tree("sim"),
         *[(f"{SHARE}/{kind}", files(kind)) for kind in KINDS],
     ],
