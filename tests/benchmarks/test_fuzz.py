@@ -1,8 +1,9 @@
 """Whatever comes in: a request that survives, or a refusal with a code and one line."""
 
-from benchmarks.fuzz import check_case
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+
+from benchmarks.fuzz import check_case
 
 
 @settings(

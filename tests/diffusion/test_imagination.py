@@ -58,7 +58,7 @@ def _windows(texts):
 @pytest.mark.parametrize("scheduler", ["ddim", "dpm-solver++"])
 def test_always_apart_gives_each_part_what_its_text_alone_would(denoiser, scheduler):
     windows = _windows(ON_PARTS)
-    together = _sample(denoiser, windows, (1, 2), scheduler=scheduler)
+    together = _sample(denoiser, windows, (1, 2), scheduler=scheduler, apart_above=1.0)
     apart = _sample(denoiser, windows, (1, 2), scheduler=scheduler, apart_above=0.0)
     order = {w.text: i for i, w in enumerate(windows)}
     arm = STATE.part_indices("right_arm")
