@@ -57,7 +57,7 @@ def test_a_plan_that_continues_another_and_came_late_is_the_same_again(again, pl
     assert difference(record, once_more.trajectory) == ""
     # and it does depend on what it continues
     apart = planner.plan(request)
-    assert "points were recorded" in difference(record, apart.trajectory)
+    assert difference(record, apart.trajectory) != ""
 
 
 def test_an_edit_is_the_same_again_without_its_file(again, planner, plan, tmp_path):
