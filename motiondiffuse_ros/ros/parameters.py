@@ -29,6 +29,12 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         check=robot_refusal,
     ),
     "device": ParameterSpec(_DEFAULT.device, "torch device: cpu, cuda", at_configure=True),
+    "threads": ParameterSpec(
+        0,
+        "of the denoiser; 0 = OMP_NUM_THREADS, or one less than the cores",
+        (0, 256),
+        at_configure=True,
+    ),
     "scheduler": ParameterSpec(
         _DEFAULT.scheduler, "sampler of the diffusion", choices=SCHEDULERS, at_configure=True
     ),
