@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import accumulate
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array, continuous
-from motiondiffuse_ros.physics.report import Report, assess, with_tracking
+from motiondiffuse_ros.physics.report import assess
 from motiondiffuse_ros.planner import Plan
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import JointTrajectory, get_robot
@@ -26,7 +26,6 @@ def join_plans(
     seams: Sequence[float],
     *,
     track: bool = False,
-    cancelled: Callable[[], bool] | None = None,
 ) -> Plan:
     """Join plans that take over from one another, and judge the motion as a whole.
 
@@ -35,20 +34,12 @@ def join_plans(
         plans: One or more, for one robot.
         seams: Time in each plan but the last at which the next one begins [s].
         track: Whether the whole is judged by simulated tracking too.
-        cancelled: Asked between the steps of the judgement.
-
-    Raises:
-        Cancelled: If `cancelled` says so.
     """
     first = plans[0]
     motion, offset = _joined_motion(plans, seams)
     robot = get_robot(first.robot)
     limits = robot if robot.is_canonical else None
-    report: Report = assess(
-        motion, segments=request.segments, robot=limits, track=False, cancelled=cancelled
-    )
-    if track:
-        report = with_tracking(report, motion, cancelled=cancelled)
+    report = assess(motion, segments=request.segments, robot=limits, track=track)
     matches = [plan.text_match for plan in plans if plan.text_match is not None]
     return replace(
         first,
@@ -106,12 +97,10 @@ def _joined_trajectory(
         )
     accelerations = [t.accelerations for t in trajectories if t.accelerations is not None]
     last = trajectories[-1]
-    tail = None if last.source is None else offset + last.source.times
-    source = (
-        None
-        if tail is None
-        else Source(motion, np.concatenate([times[: len(times) - len(tail)], tail]))
-    )
+    source = None
+    if last.source is not None:
+        tail = offset + last.source.times
+        source = Source(motion, np.concatenate([times[: len(times) - len(tail)], tail]))
     return JointTrajectory(
         joint_names=last.joint_names,
         times=times,

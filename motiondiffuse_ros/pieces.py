@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, replace
 
+from motiondiffuse_ros.diffusion.composition import STILL_TEXT
 from motiondiffuse_ros.request import LIMITS, MotionRequest, Segment
 
 TAIL = 1.0
@@ -54,16 +55,17 @@ def split(request: MotionRequest, horizon: float) -> tuple[Piece, ...]:
     )
 
 
+def nth_seed(seed: int, index: int) -> int:
+    """Return the seed of a piece from that of the first one."""
+    return (seed + index) % 2**63
+
+
 def _cut(request: MotionRequest, index: int, start: float, end: float) -> MotionRequest:
     segments = _between(request.segments, start, end)
     if not segments:  # nobody is asked for anything here
-        segments = (Segment(STANDING, 0.0, end - start),)
-    seed = None if request.seed is None else (request.seed + index) % 2**63
+        segments = (Segment(STILL_TEXT, 0.0, end - start),)
+    seed = None if request.seed is None else nth_seed(request.seed, index)
     return replace(request, segments=segments, duration=end - start, seed=seed)
-
-
-STANDING = "a person stands still"
-"""Text of a piece without any."""
 
 
 def _between(segments: tuple[Segment, ...], start: float, end: float) -> tuple[Segment, ...]:

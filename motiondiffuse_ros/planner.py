@@ -43,7 +43,7 @@ from motiondiffuse_ros.robots import (
     path_scale,
 )
 from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
-from motiondiffuse_ros.selection import eligible, text_matches
+from motiondiffuse_ros.selection import choose, eligible, text_matches
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -459,7 +459,7 @@ class Planner:
                     judged[i] = motions[i], assessed(motions[i])
                 preview = judged[i][1].verdict
                 watch.advance("physics", 0.6 * len(judged) / len(able), preview)
-            best = max(able, key=lambda i: judged[i][1].score)
+            best = choose(matches, {i: report.score for i, (_, report) in judged.items()})
             motion, report = judged[best]
             if self.config.execution != NONE:
                 motion, report = execute(

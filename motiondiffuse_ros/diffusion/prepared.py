@@ -130,7 +130,7 @@ class PreparedDenoiser:
         Args:
             x: Normalised noisy features [B, T, D].
             lengths: Frames that count in each row [B].
-            contexts: `Conditioning.contexts` of B texts.
+            contexts: `Conditioning.contexts` of B texts, in the arithmetic of the sampler.
             styles: [B, K] of their step and texts.
         """
         dtype, patch = self._dtype, self._config.patch_size
@@ -174,7 +174,7 @@ class PreparedDenoiser:
         y = own.read(query, own.summary(key, value, mask))
         tokens += self._styled(y, next(styles), layer.projections[0])
         z = F.layer_norm(tokens, (width,)).to(dtype)
-        y = cross.read(F.linear(z, *layer.text_query), text.to(dtype))
+        y = cross.read(F.linear(z, *layer.text_query), text)
         tokens += self._styled(y, next(styles), layer.projections[1])
         first, second = layer.ffn
         y = F.linear(F.gelu(F.linear(tokens.to(dtype), *first)), *second)

@@ -33,10 +33,8 @@ def floor_forces(needed: Array, arms: Array, touching: NDArray[np.bool_]) -> tup
     Returns:
         The wrench that is left [T, 6], and the push at each point [T, P, 3], in the same units.
     """
-    pieces = [slice(i, i + _FRAMES) for i in range(0, len(touching), _FRAMES)]
+    pieces = [slice(i, i + _FRAMES) for i in range(0, max(len(touching), 1), _FRAMES)]
     solved = [_solved(needed[at], arms[at], touching[at]) for at in pieces]
-    if len(solved) <= 1:
-        return solved[0] if solved else _solved(needed, arms, touching)
     return np.concatenate([left for left, _ in solved]), np.concatenate([p for _, p in solved])
 
 

@@ -269,7 +269,7 @@ class MotionDiffuseNode(LifecycleNode):
             f"planned {message.duration:.2f} s in {message.total_time:.2f} s, "
             f"{plan.report.verdict}: " + " then ".join(s.text for s in plan.request.segments)
         )
-        return Published(plan, message, Time.from_msg(message.header.stamp))
+        return Published(plan, message)
 
     def _save(self, plan: Plan) -> None:
         """Write the plan's files, if wanted; that they cannot be written does not undo a plan."""

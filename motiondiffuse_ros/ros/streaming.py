@@ -12,7 +12,7 @@ from rclpy.time import Time
 
 from motiondiffuse_ros.joined_plan import join_plans
 from motiondiffuse_ros.msg import MotionPlan
-from motiondiffuse_ros.pieces import Piece
+from motiondiffuse_ros.pieces import Piece, nth_seed
 from motiondiffuse_ros.planner import Plan, Progress
 from motiondiffuse_ros.request import MotionRequest
 
@@ -24,12 +24,15 @@ class Published:
     Attributes:
         plan: As published.
         message: That was published.
-        begins: When its first point is due.
     """
 
     plan: Plan
     message: MotionPlan
-    begins: Time
+
+    @property
+    def begins(self) -> Time:
+        """When its first point is due."""
+        return Time.from_msg(self.message.header.stamp)
 
 
 class PlanPiece(Protocol):
@@ -74,7 +77,7 @@ def plan_in_pieces(
             if made:
                 elapsed = piece.start - pieces[i - 1].start
                 follows = made[-1].begins + Duration(nanoseconds=round(1e9 * elapsed))
-                request = request.with_defaults(seed=(made[0].plan.seed + i) % 2**63)
+                request = request.with_defaults(seed=nth_seed(made[0].plan.seed, i))
 
             def share(now: Progress, done: int = i) -> None:
                 progress(replace(now, fraction=(done + now.fraction) / len(pieces)))

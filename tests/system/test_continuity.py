@@ -5,15 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from ros_graph import ANSWER, FAST, START
+from ros_plans import goal, ignore, seconds, states
 from sensor_msgs.msg import JointState
 
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
 from motiondiffuse_ros.planner import shipped_weights
-from motiondiffuse_ros.robots import broken_promises, get_robot
-from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
+from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.client import Feedback, MotionClient
-from motiondiffuse_ros.ros.conversions import trajectory_from_messages
 from motiondiffuse_ros.ros.processes import ros_arguments, running
 from motiondiffuse_ros.ros.qos import STREAM
 
@@ -35,25 +33,6 @@ def client(graph) -> Iterator[MotionClient]:
     ):
         client.wait_for_node(START)
         yield client
-
-
-def goal(text, seconds, **fields):
-    return MotionRequest(segments=[MotionSegment(text=text, start=0.0, end=seconds)], **fields)
-
-
-def seconds(stamp) -> float:
-    return stamp.sec + 1e-9 * stamp.nanosec
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
-
-
-def states(plan: MotionPlan) -> tuple[TrajectoryState, float]:
-    """Return a plan's trajectory, its promises checked, and when it begins [s]."""
-    trajectory = trajectory_from_messages(plan.trajectory, plan.root_trajectory)
-    assert broken_promises(trajectory, ROBOT) == ()
-    return TrajectoryState(trajectory), seconds(plan.header.stamp)
 
 
 def test_a_goal_during_execution_goes_on_from_there(client):

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import pytest
 from builtin_interfaces.msg import Time
 from ros_graph import ANSWER, FAST, START
+from ros_plans import goal, ignore
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
+from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.ros.client import Feedback, MotionClient
 from motiondiffuse_ros.ros.processes import ros_arguments, running
@@ -41,22 +42,13 @@ class Timekeeper(MotionClient):
         self.wait(lambda: self.stamp == seconds, ANSWER, "a node that has the time")
 
     def plan(self, seconds: float, **fields) -> MotionPlan:
-        result = self.generate(goal(seconds, **fields), ignore, ANSWER)
+        result = self.generate(goal("a person walks", seconds, **fields), ignore, ANSWER)
         assert result.error_code == ErrorCode.SUCCESS
         return result.plan
 
     def _on_health(self, message) -> None:
         super()._on_health(message)
         self.stamp = message.header.stamp.sec
-
-
-def goal(seconds: float, **fields) -> MotionRequest:
-    segment = MotionSegment(text="a person walks", start=0.0, end=seconds)
-    return MotionRequest(segments=[segment], **fields)
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
 
 
 @pytest.fixture
@@ -75,8 +67,8 @@ def keeper(graph) -> Iterator[Timekeeper]:
 def test_a_clock_that_stands_still_jumps_ahead_and_runs_back(keeper):
     # no /clock yet: it has started, and works and cancels all the same
     assert keeper.plan(1.0).header.stamp.sec == 0
-    active = keeper.send(goal(1.0, steps=1000), ignore, ANSWER)
-    waiting = keeper.send(goal(1.0), ignore, ANSWER)
+    active = keeper.send(goal("a person walks", 1.0, steps=1000), ignore, ANSWER)
+    waiting = keeper.send(goal("a person walks", 1.0), ignore, ANSWER)
     for handle in (waiting, active):
         handle.cancel_goal_async()
         assert keeper.result(handle, ANSWER).error_code == ErrorCode.CANCELED
@@ -90,7 +82,7 @@ def test_a_clock_that_stands_still_jumps_ahead_and_runs_back(keeper):
 
     # back, while one plan is executed and the next is made
     feedback: list[Feedback] = []
-    handle = keeper.send(goal(1.0, steps=300), feedback.append, ANSWER)
+    handle = keeper.send(goal("a person walks", 1.0, steps=300), feedback.append, ANSWER)
     keeper.wait(lambda: bool(feedback), ANSWER, "feedback")
     keeper.set(10)
     result = keeper.result(handle, ANSWER)

@@ -16,6 +16,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from ros_graph import ANSWER, FAST, START, own_graph
 from ros_operator import Operator
+from ros_plans import ignore
 
 from benchmarks.soak import resident_bytes
 from motiondiffuse_ros.action import GenerateMotion
@@ -58,10 +59,6 @@ def operator(node) -> Iterator[Operator]:
 
 def goal(text="a person walks", **fields):
     return MotionRequest(segments=[MotionSegment(text=text, start=0.0, end=0.6)], **fields)
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
 
 
 class Sent:

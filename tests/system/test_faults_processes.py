@@ -14,6 +14,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from lifecycle_msgs.msg import State, Transition
 from ros_graph import ANSWER, FAST, START
 from ros_operator import Operator
+from ros_plans import goal, ignore
 from small_denoiser import SMALL
 
 from benchmarks.soak import resident_bytes
@@ -21,7 +22,7 @@ from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
+from motiondiffuse_ros.msg import MotionPlan, MotionRequest
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.ros.client import Feedback, MotionClient, Unreachable
 from motiondiffuse_ros.ros.processes import ros_arguments, running
@@ -29,15 +30,11 @@ from motiondiffuse_ros.ros.qos import LATCHED
 from motiondiffuse_ros.text import load_text_encoder
 
 MODULE = "motiondiffuse_ros.ros.node"
-WALK = MotionRequest(segments=[MotionSegment(text="a person walks", start=0.0, end=1.0)])
+WALK = goal("a person walks", 1.0)
 
 pytestmark = pytest.mark.skipif(
     not (shipped_weights() / "config.json").is_file(), reason="no weights are shipped yet"
 )
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
 
 
 def small_weights(folder: Path) -> Path:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from rclpy.action.client import ClientGoalHandle
 from ros_graph import ANSWER
+from ros_plans import ignore
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
@@ -27,10 +28,6 @@ def request(*segments, **fields):
 
 def first_text(plan: MotionPlan) -> str:
     return next(iter(plan.request.segments)).text
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
 
 
 def answer(client: MotionClient, goal: MotionRequest):

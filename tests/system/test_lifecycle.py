@@ -14,15 +14,16 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from lifecycle_msgs.msg import State, Transition
 from ros_graph import ANSWER, FAST, START
 from ros_operator import Operator
+from ros_plans import goal
 
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionRequest, MotionSegment
+from motiondiffuse_ros.msg import MotionRequest
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.ros.client import MotionClient
 from motiondiffuse_ros.ros.processes import ros_arguments, running
 
 MODULE = "motiondiffuse_ros.ros.node"
-WALK = MotionRequest(segments=[MotionSegment(text="a person walks", start=0.0, end=1.0)])
+WALK = goal("a person walks", 1.0)
 
 pytestmark = pytest.mark.skipif(
     not (shipped_weights() / "config.json").is_file(), reason="no weights are shipped yet"

@@ -6,14 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from ros_graph import ANSWER, FAST, START
+from ros_plans import goal, ignore, seconds, states
 from sensor_msgs.msg import JointState
 
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
-from motiondiffuse_ros.robots import broken_promises, get_robot
-from motiondiffuse_ros.robots.trajectory_state import TrajectoryState
-from motiondiffuse_ros.ros.client import Feedback, MotionClient
-from motiondiffuse_ros.ros.conversions import trajectory_from_messages
+from motiondiffuse_ros.msg import MotionPlan
+from motiondiffuse_ros.robots import get_robot
+from motiondiffuse_ros.ros.client import MotionClient
 from motiondiffuse_ros.ros.processes import ros_arguments, running
 from motiondiffuse_ros.ros.qos import LATCHED, STREAM
 
@@ -33,24 +32,6 @@ def client(graph) -> Iterator[MotionClient]:
         yield client
 
 
-def goal(text: str, seconds: float, **fields) -> MotionRequest:
-    return MotionRequest(segments=[MotionSegment(text=text, start=0.0, end=seconds)], **fields)
-
-
-def seconds(stamp) -> float:
-    return stamp.sec + 1e-9 * stamp.nanosec
-
-
-def states(plan: MotionPlan) -> TrajectoryState:
-    trajectory = trajectory_from_messages(plan.trajectory, plan.root_trajectory)
-    assert broken_promises(trajectory, ROBOT) == ()
-    return TrajectoryState(trajectory)
-
-
-def ignore(feedback: Feedback) -> None:
-    pass
-
-
 def test_pieces_follow_one_another_without_a_jump(client):
     pieces: list[MotionPlan] = []
     points: list[JointState] = []
@@ -66,13 +47,13 @@ def test_pieces_follow_one_another_without_a_jump(client):
     client.wait(lambda: len(pieces) == 3, ANSWER, "three plans")
     assert fractions == sorted(fractions)
 
-    whole = states(result.plan)
+    whole = states(result.plan)[0]
     began = seconds(result.plan.header.stamp)
     assert began == seconds(pieces[0].header.stamp)
     assert [plan.request.seed for plan in pieces] == [3, 4, 5]
     for old, new in pairwise(pieces):
         seam = seconds(new.header.stamp) - seconds(old.header.stamp)
-        here, there = states(old).at(seam), states(new).at(0.0)
+        here, there = states(old)[0].at(seam), states(new)[0].at(0.0)
         assert seam >= 3.0 - 1e-6
         np.testing.assert_allclose(there.positions, here.positions, atol=1e-4)
         np.testing.assert_allclose(there.velocities, here.velocities, atol=1e-4)
@@ -105,7 +86,7 @@ def test_a_new_text_takes_over_from_the_piece_that_runs(client):
     taken_over = seconds(newer.plan.header.stamp)
     older = [plan for plan in plans if seconds(plan.header.stamp) < taken_over]
     running = older[-1]
-    here = states(running).at(taken_over - seconds(running.header.stamp))
-    there = states(newer.plan).at(0.0)
+    here = states(running)[0].at(taken_over - seconds(running.header.stamp))
+    there = states(newer.plan)[0].at(0.0)
     np.testing.assert_allclose(there.positions, here.positions, atol=1e-4)
     np.testing.assert_allclose(there.velocities, here.velocities, atol=1e-4)
