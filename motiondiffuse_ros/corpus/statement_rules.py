@@ -36,7 +36,9 @@ _QUICK, _CALM = 2.2, 1.0  # m/s, against the body
 _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
-_STEPS = 4
+_STEPS, _MARCH_STEPS = 4, 4
+_FULL_TURN = np.radians((300.0, 430.0))
+_LEAP, _KNEE_UP = 0.4, 0.2  # m ahead, m of a knee below its hip
 
 
 @dataclass(frozen=True)
@@ -71,10 +73,12 @@ def findings(features: Array, representation: Representation, fps: float) -> lis
     if way.speed < _SLOW:
         found += _legs(body, fps)
     if way.speed < 0.8 * _RUN:
-        found += _jumps(body, fps)
+        found += _jumps(body, way, fps)
     if body.upright.min() > _UPRIGHT:
         feet = features[:, groups["contacts"]] > 0.5
         found += _travelling(way, _walks(feet), feet)
+        if Finding("on the spot") in found and _marches(body):
+            found.append(Finding("march"))
         found += _hands(body, fps)
         velocities = features[:, groups["velocities"]].reshape(len(features), -1, 3)
         if np.linalg.norm(velocities, axis=-1).mean(axis=1).max() < _STILL:
@@ -137,6 +141,8 @@ def _turning(way: Travel, size: float, side: int) -> list[Finding]:
             found.append(Finding("quarter turn", side))
         elif _HALF_TURN[0] < size < _HALF_TURN[1]:
             found.append(Finding("half turn", side))
+        elif _FULL_TURN[0] < size < _FULL_TURN[1]:
+            found.append(Finding("full turn", side))
     return found
 
 
@@ -212,15 +218,34 @@ def _legs(body: _Body, fps: float) -> list[Finding]:
     return found
 
 
-def _jumps(body: _Body, fps: float) -> list[Finding]:
+def _jumps(body: _Body, way: Travel, fps: float) -> list[Finding]:
     """Find flights: both feet off the floor while the root falls freely, up or down."""
-    toes = np.minimum(body.level("left_foot"), body.level("right_foot"))[1:-1]
+    toes = {side: body.level(f"{side}_foot") for side in ("left", "right")}
+    low = np.minimum(toes["left"], toes["right"])[1:-1]
     falling = np.diff(body.height, 2) * fps**2 < _FREE_FALL
-    flying = (toes > TOE_HEIGHT + _OFF_THE_FLOOR) & falling
+    flying = (low > TOE_HEIGHT + _OFF_THE_FLOOR) & falling
     times = sum(stop - start >= _FLIGHT * fps for start, stop in runs(flying))
     if not times:
         return []
-    return [Finding("jump"), Finding("jumps")] if times > 2 else [Finding("jump")]
+    for side, own, other in ((1, "left", "right"), (-1, "right", "left")):
+        if toes[other].min() > TOE_HEIGHT + _OFF_THE_FLOOR and toes[own].min() < _FOOT_DOWN:
+            upright = body.upright.min() > _UPRIGHT
+            return [Finding("hops", side)] if upright and times > 1 else []
+    found = [Finding("jump")]
+    if times > 2:
+        found.append(Finding("jumps"))
+    if way.straight > 0 and way.ahead > _LEAP * times:
+        found.append(Finding("jump ahead"))
+    return found
+
+
+def _marches(body: _Body) -> bool:
+    """Whether both knees come up nearly to the hips, and each of them more than once."""
+    lifts = []
+    for side in ("left", "right"):
+        below = body.level(f"{side}_hip") - body.level(f"{side}_knee")
+        lifts.append(sum(1 for _ in runs(below < _KNEE_UP)))
+    return min(lifts) * 2 >= _MARCH_STEPS
 
 
 def _hands(body: _Body, fps: float) -> list[Finding]:

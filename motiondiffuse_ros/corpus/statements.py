@@ -7,20 +7,28 @@ clip. The rules are in `statement_rules`, the sentences here.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from motiondiffuse_ros.corpus.statement_rules import Finding, findings
 from motiondiffuse_ros.motion.features import PoseState, Representation
 from motiondiffuse_ros.motion.rotations import Array
 
-# {n}: a number of metres in words. Sided sentences are written for the left.
+# {n}: a number of metres in words. Sided sentences are written for the left. The first two of a
+# kind are what the choice among candidates compares with (`statements_of`).
 _SENTENCES: dict[str, tuple[str, ...]] = {
     "sideways": (
         "a person steps sideways to the left",
         "a person moves sideways to the left",
         "a person takes side steps to the left",
+        "a person goes to the left and faces ahead",
+        "a person takes some steps to the left side",
     ),
-    "turn": ("a person turns to the left on the spot", "a person turns left"),
+    "turn": (
+        "a person turns to the left on the spot",
+        "a person turns left in place",
+        "a person rotates to the left",
+    ),
     "quarter turn": (
         "a person makes a quarter turn to the left",
         "a person turns left by about ninety degrees",
@@ -28,49 +36,99 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
     "half turn": (
         "a person makes a half turn to the left",
         "a person turns around to the left and faces the other way",
+        "a person turns the back to the front, going round by the left",
+    ),
+    "full turn": (
+        "a person makes a full turn to the left on the spot",
+        "a person spins all around to the left once",
     ),
     "curve": ("a person walks in a curve to the left", "a person walks and turns left"),
     "circle": (
         "a person walks around in a circle, always turning left",
         "a person goes all the way around a circle to the left",
     ),
-    "run in a curve": ("a person runs in a curve to the left", "a person runs and turns left"),
+    "run in a curve": ("a person runs along a curve to the left", "a person runs and turns left"),
     "one hand up": (
         "a person holds the left hand above the head",
         "a person raises the left hand above the head",
+        "a person puts up the left hand",
     ),
     "one hand waves": (
         "a person raises the left hand and waves with it",
         "a person waves the left hand from side to side",
+        "a person waves with the left arm",
     ),
     "one arm fast": (
         "a person moves the left arm fast and keeps the right arm calm",
         "a person makes a quick movement with the left hand",
+        "a person swings the left arm with force",
     ),
     "one leg up": (
         "a person lifts the left foot high off the floor",
         "a person stands on the right leg and lifts the left leg",
+        "a person raises the left knee",
     ),
     "one leg fast": (
         "a person swings the left leg up fast",
         "a person strikes out with the left foot",
+        "a person gives a kick with the left leg",
     ),
-    "walk": ("a person walks forward", "a person walks straight ahead"),
-    "slow walk": ("a person walks forward slowly", "a person walks slowly"),
-    "fast walk": ("a person walks forward quickly", "a person walks fast"),
+    "walk": (
+        "a person walks forward",
+        "a person walks straight ahead",
+        "a person goes ahead on foot",
+        "a person walks along",
+        "a person takes steps ahead",
+    ),
+    "slow walk": (
+        "a person walks forward slowly",
+        "a person walks slowly",
+        "a person goes ahead at a slow pace",
+    ),
+    "fast walk": (
+        "a person walks forward quickly",
+        "a person walks fast",
+        "a person strides along in a hurry",
+        "a person walks very fast, almost running",
+    ),
     "distance": ("a person walks forward {n}", "a person walks {n} straight ahead"),
-    "on the spot": ("a person steps on the spot", "a person walks in place without getting ahead"),
-    "run": ("a person runs forward", "a person runs straight ahead"),
+    "on the spot": (
+        "a person steps on the spot",
+        "a person walks in place without getting ahead",
+        "a person treads in place",
+    ),
+    "march": (
+        "a person steps in place and lifts the knees high",
+        "a person marches in place with high knees",
+    ),
+    "run": (
+        "a person runs forward",
+        "a person runs straight ahead",
+        "a person runs along",
+        "a person goes at a run",
+    ),
     "slow run": ("a person jogs straight ahead", "a person runs forward at an easy pace"),
-    "fast run": ("a person sprints straight ahead", "a person runs forward very fast"),
-    "back": ("a person walks backward", "a person steps back"),
+    "fast run": (
+        "a person sprints straight ahead",
+        "a person runs forward very fast",
+        "a person runs at full speed",
+    ),
+    "back": (
+        "a person walks backward",
+        "a person steps back",
+        "a person walks backwards",
+        "a person moves back and faces ahead",
+        "a person takes steps backward",
+    ),
     "both hands up": (
         "a person holds both hands above the head",
         "a person raises both hands above the head",
+        "a person puts both hands up",
     ),
     "both hands wave": (
         "a person raises both hands and waves with them",
         "a person waves both hands from side to side",
+        "a person waves with both arms",
     ),
     "arms out": (
         "a person holds both arms out sideways at shoulder height",
@@ -79,6 +137,8 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
     "bow": (
         "a person bends forward at the waist and straightens up again",
         "a person bows forward and comes up again",
+        "a person bows",
+        "a person takes a bow",
     ),
     "down low": (
         "a person bends the knees and goes down low",
@@ -87,11 +147,34 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
     "reach down": (
         "a person reaches down to the floor with a hand",
         "a person bends down until a hand is near the floor",
+        "a person bends over and reaches for the feet",
     ),
-    "jump": ("a person jumps", "a person jumps into the air with both feet"),
+    "jump": (
+        "a person jumps",
+        "a person jumps into the air with both feet",
+        "a person leaps up",
+    ),
     "jumps": ("a person jumps again and again", "a person keeps jumping"),
-    "still": ("a person stands still", "a person stays in place without moving"),
+    "jump ahead": ("a person jumps forward", "a person leaps forward with both feet"),
+    "hops": (
+        "a person hops on the left leg",
+        "a person hops on one leg, the left",
+        "a person jumps on the left foot and holds the right one up",
+    ),
+    "still": (
+        "a person stands still",
+        "a person stays in place without moving",
+        "a person waits",
+        "a person stands and does nothing",
+        "a person stands around",
+    ),
 }
+_PERSON = "a person "
+_OTHERS = ("a man ", "a woman ", "the figure ")
+# verbs in the third person: the first word, and the one after "and"
+_VERB = re.compile(r"(^|\band )(\w+?)(?:(?<=[gd]o)es|(?<=ch)es|s)\b")
+_BODY = re.compile(r"\bthe (?=(?:left |right )?(?:hand|arm|leg|foot|feet|knee|head|palm|waist))")
+_COMPARED = 2
 _NUMBERS = ("one", "two", "three", "four", "five", "six", "seven", "eight")
 
 OPPOSED = (
@@ -130,16 +213,19 @@ def state(features: Array, representation: Representation, fps: float) -> tuple[
 
 def all_statements() -> tuple[str, ...]:
     """Return every sentence that `state` may give."""
-    return statements_of(tuple(_SENTENCES))
+    return tuple(dict.fromkeys(t for f in _forms(tuple(_SENTENCES)) for t in _texts(f)))
 
 
 def statements_of(kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """Return every sentence of some kinds."""
-    every = (f for kind in kinds for f in _forms(kind))
-    return tuple(text for finding in every for text in _texts(finding))
+    """Return some sentences of each of some kinds, all of a person."""
+    return tuple(text for form in _forms(kinds) for text in _sentences(form)[:_COMPARED])
 
 
-def _forms(kind: str) -> tuple[Finding, ...]:
+def _forms(kinds: tuple[str, ...]) -> tuple[Finding, ...]:
+    return tuple(form for kind in kinds for form in _forms_of(kind))
+
+
+def _forms_of(kind: str) -> tuple[Finding, ...]:
     if kind == "distance":
         return tuple(Finding(kind, metres=n + 1) for n in range(len(_NUMBERS)))
     if "left" in _SENTENCES[kind][0]:
@@ -148,6 +234,10 @@ def _forms(kind: str) -> tuple[Finding, ...]:
 
 
 def _texts(finding: Finding) -> tuple[str, ...]:
+    return tuple(text for sentence in _sentences(finding) for text in _voices(sentence))
+
+
+def _sentences(finding: Finding) -> tuple[str, ...]:
     sentences = _SENTENCES[finding.kind]
     if finding.side < 0:
         return tuple(map(_swap_sides, sentences))
@@ -155,6 +245,13 @@ def _texts(finding: Finding) -> tuple[str, ...]:
         way = f"{_NUMBERS[finding.metres - 1]} meter{'s' if finding.metres > 1 else ''}"
         return tuple(sentence.format(n=way) for sentence in sentences)
     return sentences
+
+
+def _voices(sentence: str) -> tuple[str, ...]:
+    """Return a sentence about a person, about others, and as it is said to somebody."""
+    deed = sentence.removeprefix(_PERSON)
+    told = _BODY.sub("your ", _VERB.sub(r"\1\2", deed))
+    return sentence, *(other + deed for other in _OTHERS), told, told
 
 
 def _swap_sides(text: str) -> str:
