@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import torch
 from torch import Tensor
 
+from motiondiffuse_ros.diffusion.attention import AttentionContext
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.prepared import prepared
 
@@ -46,6 +47,7 @@ class GuidedDenoiser:
         self._pooled, self._style_of = torch.unique(every.pooled, dim=0, return_inverse=True)
         self._steps, self._scale = list(steps), scale
         self._styles: dict[int, Tensor] = {}
+        self._of_rows: tuple[list[int], list[AttentionContext]] = [], []
 
     def __call__(self, noisy: Tensor, step: int, lengths: Tensor, rows: Tensor) -> Tensor:
         """Return the prediction [B, T, D] for noisy features.
@@ -64,13 +66,20 @@ class GuidedDenoiser:
         prediction = self._denoiser(
             noisy,
             lengths,
-            [context.expand(rows) for context in self._contexts],
+            self._contexts_of(rows),
             self._styles_at(step)[self._style_of[rows]],
         )
         if scale == 1.0:
             return prediction
         conditional, free = prediction.chunk(2)
         return free + scale * (conditional - free)
+
+    def _contexts_of(self, rows: Tensor) -> list[AttentionContext]:
+        """Return what rows attend to; most timelines ask for the same rows at every step."""
+        wanted = rows.tolist()
+        if self._of_rows[0] != wanted:
+            self._of_rows = wanted, [context.expand(rows) for context in self._contexts]
+        return self._of_rows[1]
 
     def _styles_at(self, step: int) -> Tensor:
         if step not in self._styles:

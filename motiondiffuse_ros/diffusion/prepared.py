@@ -19,6 +19,7 @@ from motiondiffuse_ros.diffusion.denoiser import (
     StylizationBlock,
     step_embedding,
 )
+from motiondiffuse_ros.diffusion.product import GELU, Convolution, Product
 
 _Linear = tuple[Tensor, Tensor]
 """Weight and bias."""
@@ -26,11 +27,11 @@ _Linear = tuple[Tensor, Tensor]
 
 @dataclass(frozen=True)
 class _Layer:
-    own: _Linear
+    own: Product
     """Queries, keys and values of the self-attention in one."""
-    text_query: _Linear
-    ffn: tuple[_Linear, _Linear]
-    projections: tuple[_Linear, ...]
+    text_query: Product
+    ffn: tuple[Product, Product]
+    projections: tuple[Product, ...]
     """Of the three stylization blocks."""
     own_attention: Attention
     text_attention: Attention
@@ -63,20 +64,20 @@ class PreparedDenoiser:
         if isinstance(self._head, ConvolutionalHead):
             head = self._head
             styles.append(_scale_and_shift(head.style.weight, head.style.bias))
-            self._unpatch = self._cast(_after_norm(denoiser.norm, head.unpatch))
-            self._skip = self._cast(_of(head.skip))
+            self._unpatch = self._product(_after_norm(denoiser.norm, head.unpatch))
+            self._skip = self._product(_of(head.skip))
             self._blocks = [
-                (norm, *self._cast(_of(cast("nn.Conv1d", convolution))))
+                (norm, Convolution(*_of(cast("nn.Conv1d", convolution)), dtype))
                 for norm, convolution in zip(head.norms, head.convolutions, strict=True)
             ]
-            self._out = self._cast(_of(head.out))
+            self._out = self._product(_of(head.out))
         else:
-            self._out = self._cast(_after_norm(denoiser.norm, self._head.out))
+            self._out = self._product(_after_norm(denoiser.norm, self._head.out))
         self._style_widths = [len(bias) for _, bias in styles]
-        self._styles = self._cast(
+        self._styles = self._product(
             (torch.cat([w for w, _ in styles]), torch.cat([b for _, b in styles]))
         )
-        self._patch_in = self._cast(_of(denoiser.patch_in))
+        self._patch_in = self._product(_of(denoiser.patch_in))
         self._positions = denoiser.positions.detach()
         self._time_in = denoiser.time_in
 
@@ -92,19 +93,19 @@ class PreparedDenoiser:
         assert isinstance(first, nn.Linear)
         assert isinstance(second, nn.Linear)
         return _Layer(
-            own=self._cast(merged),
-            text_query=self._cast(_after_norm(text.norm, text.query)),
-            ffn=(self._cast(_of(first)), self._cast(_of(second))),
+            own=self._product(merged),
+            text_query=self._product(_after_norm(text.norm, text.query)),
+            ffn=(self._product(_of(first)), self._product(_of(second))),
             projections=tuple(
-                self._cast(_of(cast("StylizationBlock", style).project)) for style in layer.styles
+                self._product(_of(cast("StylizationBlock", block).project))
+                for block in layer.styles
             ),
             own_attention=own,
             text_attention=text,
         )
 
-    def _cast(self, pair: _Linear) -> _Linear:
-        weight, bias = pair
-        return weight.detach().to(self._dtype), bias.detach().to(self._dtype)
+    def _product(self, linear: _Linear) -> Product:
+        return Product(*linear, self._dtype)
 
     def styles(self, steps: Sequence[int], pooled: Tensor) -> Tensor:
         """Return all stylization vectors [S, B, K] of some steps for some texts.
@@ -116,7 +117,7 @@ class PreparedDenoiser:
         at = torch.tensor(steps, device=pooled.device)
         time = self._time_in(step_embedding(at, self._config.width))
         embedding = F.silu(time[:, None] + pooled.float()).to(self._dtype)
-        return F.linear(embedding, *self._styles)
+        return self._styles(embedding)
 
     def __call__(
         self,
@@ -139,24 +140,23 @@ class PreparedDenoiser:
         x = F.pad(x * frame_mask[..., None], (0, 0, 0, -frames % patch)).to(dtype)
         frame_mask = F.pad(frame_mask, (0, -frames % patch))
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
-        tokens = F.linear(x.unflatten(1, (-1, patch)).flatten(2), *self._patch_in)
+        tokens = self._patch_in(x.unflatten(1, (-1, patch)).flatten(2))
         tokens = tokens + self._positions[: tokens.shape[1]]
         pieces = iter(styles[:, None].split(self._style_widths, dim=-1))
         for layer, text in zip(self._layers, contexts, strict=True):
             self._pass(layer, tokens, token_mask, text, pieces)
         hidden = F.layer_norm(tokens, tokens.shape[-1:]).to(dtype)
         if not isinstance(self._head, ConvolutionalHead):
-            y = F.linear(hidden, *self._out).unflatten(-1, (patch, -1)).flatten(1, 2)
+            y = self._out(hidden).unflatten(-1, (patch, -1)).flatten(1, 2)
             return y[:, :frames].float()
-        hidden = F.linear(hidden, *self._unpatch).unflatten(-1, (patch, -1)).flatten(1, 2)
-        hidden = hidden + F.linear(x, *self._skip)
+        hidden = self._unpatch(hidden).unflatten(-1, (patch, -1)).flatten(1, 2)
+        hidden = hidden + self._skip(x)
         scale, shift = next(pieces).chunk(2, dim=-1)
         hidden = torch.addcmul(shift, hidden, scale).float()
-        for norm, weight, bias in self._blocks:
-            y = (F.silu(norm(hidden), inplace=True) * frame_mask[..., None]).to(dtype)
-            y = F.conv1d(y.transpose(1, 2), weight, bias, padding=weight.shape[-1] // 2)
-            hidden += y.transpose(1, 2)
-        return F.linear(hidden.to(dtype), *self._out)[:, :frames].float()
+        for norm, convolution in self._blocks:
+            y = F.silu(norm(hidden), inplace=True) * frame_mask[..., None]
+            hidden += convolution(y.to(dtype))
+        return self._out(hidden.to(dtype))[:, :frames].float()
 
     def _pass(
         self,
@@ -170,20 +170,20 @@ class PreparedDenoiser:
         dtype, width = self._dtype, tokens.shape[2]
         own, cross = layer.own_attention, layer.text_attention
         z = F.layer_norm(tokens, (width,)).to(dtype)
-        query, key, value = F.linear(z, *layer.own).chunk(3, dim=-1)
+        query, key, value = layer.own(z).chunk(3, dim=-1)
         y = own.read(query, own.summary(key, value, mask))
         tokens += self._styled(y, next(styles), layer.projections[0])
         z = F.layer_norm(tokens, (width,)).to(dtype)
-        y = cross.read(F.linear(z, *layer.text_query), text)
+        y = cross.read(layer.text_query(z), text)
         tokens += self._styled(y, next(styles), layer.projections[1])
         first, second = layer.ffn
-        y = F.linear(F.gelu(F.linear(tokens.to(dtype), *first)), *second)
+        y = second(first(tokens.to(dtype), GELU))
         tokens += self._styled(y, next(styles), layer.projections[2])
 
-    def _styled(self, y: Tensor, style: Tensor, projection: _Linear) -> Tensor:
+    def _styled(self, y: Tensor, style: Tensor, projection: Product) -> Tensor:
         scale, shift = style.chunk(2, dim=-1)
         z = torch.addcmul(shift, F.layer_norm(y, y.shape[-1:]), scale)
-        return F.linear(F.silu(z, inplace=True), *projection)
+        return projection(F.silu(z, inplace=True))
 
 
 _KEPT: WeakKeyDictionary[Denoiser, tuple[object, PreparedDenoiser]] = WeakKeyDictionary()

@@ -49,8 +49,8 @@ class SamplerConfig:
     """
 
     scheduler: str = "dpm-solver++"
-    steps: int = 24
-    spacing: float = 2.0
+    steps: int = 12
+    spacing: float = 2.5
     guidance_scale: float = 2.5
     guidance_interval: tuple[float, float] = (0.6, 1.0)
     part_correction: float = 0.0
