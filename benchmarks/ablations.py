@@ -2,14 +2,15 @@
 
     python -m benchmarks.ablations [--corpus DIR] [--out DIR] [--minutes 5] [--json F]
 
-Each variant is trained from scratch for the same wall time with nothing beside it and measured on
-the validation split by the shipped ruler. So little training shows what learns fastest, not what
-is best in the end.
+Each variant is trained from scratch on one thread for the same processor time, whatever else the
+machine does, and measured on the validation split by the shipped ruler. So little training shows
+what learns fastest, not what is best in the end.
 """
 
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -87,7 +88,7 @@ class Options:
     out: Path = Path("runs/ablations")
     """Folder of the runs; those that are there are measured again, not trained again."""
     minutes: float = 5.0
-    """Training time of each variant."""
+    """Training time of each variant, of one processor."""
     variants: tuple[str, ...] = tuple(VARIANTS)
     """Which to run."""
     json: Path | None = None
@@ -100,6 +101,7 @@ def main() -> None:
     """Train, measure and print the tables."""
     options = tyro.cli(Options)
     keep_freed_memory()
+    torch.set_num_threads(1)
     corpus, minilm = Corpus.load(options.corpus), load_text_encoder("minilm")
     evaluator = Evaluator.from_pretrained(shipped_evaluator(), minilm)
     rows: list[Row] = []
@@ -136,7 +138,7 @@ def _train(
     # a short horizon of the average: it must not hold the first steps of so short a run
     config = TrainConfig(minutes=minutes, warmup_steps=20, ema_decay=0.98, validate_steps=10**6)
     if not (folder / CHECKPOINT_FOLDER).exists():
-        Trainer(corpus, encoder, denoiser, config, folder).run()
+        Trainer(corpus, encoder, denoiser, config, folder, clock=time.process_time).run()
     last = json.loads((folder / "log.jsonl").read_text().splitlines()[-1])
     return last["step"] * config.batch_size
 

@@ -75,6 +75,7 @@ class Trainer:
         start: Checkpoint | None = None,
         critic: Evaluator | None = None,
         on_captions: Callable[[int, int], None] | None = None,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         config.validate()
         if corpus.representation.name != denoiser_config.representation:
@@ -83,6 +84,7 @@ class Trainer:
                 f"{corpus.representation.name}, which cannot be trained on yet"
             )
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
+        self._clock = clock
         torch.manual_seed(config.seed)
         self._denoiser = Denoiser(denoiser_config)
         self._started_from = None if start is None else start.sha256
@@ -136,16 +138,16 @@ class Trainer:
         config = self._config
         writer = SummaryWriter(str(self._out))
         validation: float | None = None
-        mean_loss, saved, began = 0.0, self._seconds, time.monotonic()
+        mean_loss, saved, began = 0.0, self._seconds, self._clock()
         before = self._seconds
-        rate, lap = 0.0, time.monotonic()
+        rate, lap = 0.0, self._clock()
         try:
             while self._seconds < 60.0 * config.minutes:
                 losses, alignment = self._train_step(next(self._windows))
                 self._step += 1
                 total = losses.features.item()
                 mean_loss = total if mean_loss == 0.0 else 0.98 * mean_loss + 0.02 * total
-                now = time.monotonic()
+                now = self._clock()
                 speed = config.batch_size / (now - lap)
                 rate, lap = (speed if rate == 0.0 else 0.95 * rate + 0.05 * speed), now
                 self._seconds = before + now - began
@@ -155,7 +157,7 @@ class Trainer:
                     validation = self.validate()
                     writer.add_scalar("validation/plain", validation, self._step)
                     self._append_log({"validation": validation})
-                    lap = time.monotonic()
+                    lap = self._clock()
                 if self._seconds - saved > 60.0 * config.save_minutes:
                     self.save()
                     saved = self._seconds
