@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
@@ -11,7 +11,7 @@ import numpy as np
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array, continuous
 from motiondiffuse_ros.physics.report import assess
-from motiondiffuse_ros.planner import Plan
+from motiondiffuse_ros.planner import Origin, PieceOrigin, Plan, Progress
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import JointTrajectory, get_robot
 from motiondiffuse_ros.robots.trajectory import Source
@@ -57,6 +57,25 @@ def join_plans(
             stage: sum(plan.timings_s[stage] for plan in plans) for stage in first.timings_s
         },
         text_match=float(np.mean(matches)) if matches else None,
+        origin=_joined_origin(request, plans, seams),
+    )
+
+
+def progress_of_piece(
+    progress: Callable[[Progress], None], index: int, count: int
+) -> Callable[[Progress], None]:
+    """Return who is told how far one piece of several is, and says how far that is in all."""
+    return lambda now: progress(replace(now, fraction=(index + now.fraction) / count))
+
+
+def _joined_origin(request: MotionRequest, plans: Sequence[Plan], seams: Sequence[float]) -> Origin:
+    return Origin(
+        given=request,
+        start=plans[0].origin.start,
+        pieces=tuple(
+            PieceOrigin(plan.request, plan.origin, begins)
+            for plan, begins in zip(plans, (0.0, *seams), strict=True)
+        ),
     )
 
 

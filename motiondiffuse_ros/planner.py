@@ -149,11 +149,28 @@ class Origin:
         given: The request as it came, defaults not filled in.
         start: What the motion continues.
         restarts: States from which the plan was started instead, one after the other.
+        pieces: What it was joined from (`joined_plan`); none if it was planned in one.
     """
 
     given: MotionRequest
     start: Start
     restarts: tuple[StartState, ...] = ()
+    pieces: tuple[PieceOrigin, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class PieceOrigin:
+    """What one of the plans that were joined was made from.
+
+    Attributes:
+        request: With all defaults filled in.
+        origin: Of the plan; not joined itself.
+        begins: When it takes over from the one before, from the start of that one [s].
+    """
+
+    request: MotionRequest
+    origin: Origin
+    begins: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,15 +11,51 @@ import torch
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.fields import check_fields
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.planner import Origin, Plan, Planner, PlannerConfig
+from motiondiffuse_ros.planner import Origin, PieceOrigin, Plan, Planner, PlannerConfig
 from motiondiffuse_ros.recording import arrays
 from motiondiffuse_ros.recording.robot_hashes import robot_hashes
 from motiondiffuse_ros.recording.surroundings import surroundings
 from motiondiffuse_ros.request import MotionRequest
 from motiondiffuse_ros.robots import get_robot
 
-FORMAT = 1
+FORMAT = 2
 _PATHS = ("weights", "text_encoder")
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedPiece:
+    """One of the plans that a recorded one was joined from; as in `Record`.
+
+    Attributes:
+        given: The request as it came to the planner.
+        request: With all defaults filled in and the seed drawn.
+        restarts: How many states it was started from instead.
+        begins: When it takes over from the one before, from the start of that one [s].
+    """
+
+    given: MotionRequest
+    request: MotionRequest
+    restarts: int
+    begins: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return JSON types; `from_dict` takes them back."""
+        return {
+            "given": self.given.to_dict(),
+            "request": self.request.to_dict(),
+            "restarts": self.restarts,
+            "begins": self.begins,
+        }
+
+    @classmethod
+    def from_dict(cls, data: Any) -> RecordedPiece:
+        """Build from what `to_dict` returned; KeyError or TypeError where something is missing."""
+        return cls(
+            given=MotionRequest.from_dict(data["given"]),
+            request=MotionRequest.from_dict(data["request"]),
+            restarts=int(data["restarts"]),
+            begins=float(data["begins"]),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +73,9 @@ class Record:
         candidate: Index of the chosen one.
         joint_names: Of the trajectory.
         plan: Content of plan.json: report, notes, timings.
-        values: Start, restarts and trajectory as arrays.
+        values: Start, restarts and trajectory as arrays; start and restarts of each piece too.
         edited: Content of the motion file that was edited; empty if none was.
+        pieces: What it was joined from; none if it was planned in one.
     """
 
     settings: PlannerConfig
@@ -53,6 +90,7 @@ class Record:
     plan: dict[str, Any] = field(repr=False)
     values: dict[str, Array] = field(repr=False)
     edited: bytes = field(default=b"", repr=False)
+    pieces: tuple[RecordedPiece, ...] = field(default=(), repr=False)
 
     @property
     def trajectory(self) -> dict[str, Array]:
@@ -67,9 +105,16 @@ class Record:
             RecordingError: If arrays are missing or of a wrong shape.
         """
         try:
-            states = (arrays.within(f"restart/{i}", self.values) for i in range(self.restarts))
-            start = arrays.to_start(arrays.within("start", self.values))
-            return Origin(self.given, start, tuple(map(arrays.to_state, states)))
+            origin = _origin(self.given, self.restarts, self.values)
+            pieces = tuple(
+                PieceOrigin(
+                    piece.request,
+                    _origin(piece.given, piece.restarts, arrays.within(f"piece/{i}", self.values)),
+                    piece.begins,
+                )
+                for i, piece in enumerate(self.pieces)
+            )
+            return replace(origin, pieces=pieces)
         except (KeyError, IndexError, ValueError) as error:
             raise RecordingError(f"the recorded start cannot be read ({error})") from error
 
@@ -89,6 +134,7 @@ class Record:
             "candidate": self.candidate,
             "joint_names": list(self.joint_names),
             "plan": self.plan,
+            "pieces": [piece.to_dict() for piece in self.pieces],
         }
 
     @classmethod
@@ -119,6 +165,7 @@ class Record:
                 plan=dict(data["plan"]),
                 values=values,
                 edited=edited,
+                pieces=tuple(map(RecordedPiece.from_dict, data["pieces"])),
             )
         except (KeyError, TypeError, ValueError) as error:
             raise RecordingError(f"a field is missing or wrong ({error})") from error
@@ -131,9 +178,9 @@ def record_of(planner: Planner, plan: Plan) -> Record:
         OSError: If the motion file that was edited is gone.
     """
     values = arrays.under("trajectory", arrays.of_trajectory(plan.trajectory))
-    values |= arrays.under("start", arrays.of_start(plan.origin.start))
-    for i, state in enumerate(plan.origin.restarts):
-        values |= arrays.under(f"restart/{i}", arrays.of_state(state))
+    values |= _of_origin(plan.origin)
+    for i, piece in enumerate(plan.origin.pieces):
+        values |= arrays.under(f"piece/{i}", _of_origin(piece.origin))
     edit = plan.request.edit
     return Record(
         settings=_absolute(planner.config),
@@ -148,6 +195,12 @@ def record_of(planner: Planner, plan: Plan) -> Record:
         plan=plan.to_dict(),
         values=values,
         edited=b"" if edit is None else Path(edit.motion).read_bytes(),
+        pieces=tuple(
+            RecordedPiece(
+                piece.origin.given, piece.request, len(piece.origin.restarts), piece.begins
+            )
+            for piece in plan.origin.pieces
+        ),
     )
 
 
@@ -155,6 +208,21 @@ def hashes_of(planner: Planner, plan: Plan) -> dict[str, str]:
     """Return the planner's hashes; the critic's only if it had a part in the choice."""
     judged = plan.text_match is not None and plan.request.candidates != 1
     return {k: v for k, v in planner.hashes.items() if judged or not k.startswith("critic/")}
+
+
+def _of_origin(origin: Origin) -> dict[str, Array]:
+    """Return start and restarts as arrays."""
+    values = arrays.under("start", arrays.of_start(origin.start))
+    for i, state in enumerate(origin.restarts):
+        values |= arrays.under(f"restart/{i}", arrays.of_state(state))
+    return values
+
+
+def _origin(given: MotionRequest, restarts: int, values: arrays.Arrays) -> Origin:
+    """Return what `_of_origin` took apart; KeyError, IndexError or ValueError where it is not."""
+    states = (arrays.within(f"restart/{i}", values) for i in range(restarts))
+    start = arrays.to_start(arrays.within("start", values))
+    return Origin(given, start, tuple(map(arrays.to_state, states)))
 
 
 def _absolute(config: PlannerConfig) -> PlannerConfig:

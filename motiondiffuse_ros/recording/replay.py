@@ -12,7 +12,8 @@ import numpy as np
 import torch
 
 from motiondiffuse_ros.errors import RecordingError
-from motiondiffuse_ros.planner import Plan, Planner, Progress
+from motiondiffuse_ros.joined_plan import join_plans, progress_of_piece
+from motiondiffuse_ros.planner import Origin, Plan, Planner, Progress
 from motiondiffuse_ros.recording import arrays
 from motiondiffuse_ros.recording.record import Record
 from motiondiffuse_ros.recording.robot_hashes import MODEL, robot_hashes
@@ -68,17 +69,39 @@ def doubts(record: Record) -> list[str]:
 def replay(
     record: Record, planner: Planner, progress: Callable[[Progress], None] | None = None
 ) -> Plan:
-    """Plan again what was recorded, with as many threads as then.
+    """Plan again what was recorded, with as many threads as then; piece by piece if it was so.
 
     Raises:
         MotionDiffuseError: As `Planner.plan`.
+        RecordingError: If the start that was recorded cannot be read.
     """
     origin = record.origin
-    with _threads(record.threads), _request(record) as request:
-        plan = planner.plan(request, start=origin.start, progress=progress)
-        for state in origin.restarts:
-            plan = planner.restarted(plan, state)
+    with _threads(record.threads):
+        if origin.pieces:
+            return _joined(planner, origin, progress)
+        with _request(record) as request:
+            return _planned(planner, request, origin, progress)
+
+
+def _planned(
+    planner: Planner,
+    request: MotionRequest,
+    origin: Origin,
+    progress: Callable[[Progress], None] | None,
+) -> Plan:
+    plan = planner.plan(request, start=origin.start, progress=progress)
+    for state in origin.restarts:
+        plan = planner.restarted(plan, state)
     return plan
+
+
+def _joined(planner: Planner, origin: Origin, progress: Callable[[Progress], None] | None) -> Plan:
+    count, plans = len(origin.pieces), []
+    for i, piece in enumerate(origin.pieces):
+        told = None if progress is None else progress_of_piece(progress, i, count)
+        plans.append(_planned(planner, piece.request, piece.origin, told))
+    seams = [piece.begins for piece in origin.pieces[1:]]
+    return join_plans(origin.given, plans, seams, track=planner.config.track)
 
 
 def difference(record: Record, trajectory: JointTrajectory) -> str:

@@ -231,7 +231,10 @@ class MotionDiffuseNode(LifecycleNode):
             return first
         plan = whole(request, made, track=self.settings["track"])
         self._save(plan)
-        return plan_to_message(plan, first.header, first.plan_id)
+        message = plan_to_message(plan, first.header, first.plan_id)
+        planner, folder = self._configured.planner, self.settings["record_dir"]
+        self._recorder.record(folder, planner, plan, message)
+        return message
 
     def _plan_piece(
         self,

@@ -81,12 +81,16 @@ class PlanRecorder:
         self._health, self._logger, self._namespace = health, logger, namespace
 
     def record(self, folder: str, planner: Planner, plan: Plan, message: MotionPlan) -> None:
-        """Write STAMP_ID.mcap, the stamp in seconds; an empty folder is none."""
+        """Write STAMP_ID.mcap, the stamp in seconds; an empty folder is none.
+
+        What pieces are together, which has stamp and id of the first, is in STAMP_ID_whole.mcap.
+        """
         if not folder:
             self._health.keep("recording", "")
             return
         stamp = message.header.stamp
-        name = f"{stamp.sec}.{stamp.nanosec:09d}_{message.plan_id}.mcap"
+        ending = "_whole.mcap" if plan.origin.pieces else ".mcap"
+        name = f"{stamp.sec}.{stamp.nanosec:09d}_{message.plan_id}{ending}"
         path = Path(folder).expanduser() / name
         problem = ""
         try:

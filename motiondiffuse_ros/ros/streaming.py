@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
 
 from rclpy.duration import Duration
 from rclpy.time import Time
 
-from motiondiffuse_ros.joined_plan import join_plans
+from motiondiffuse_ros.joined_plan import join_plans, progress_of_piece
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.pieces import Piece, nth_seed
 from motiondiffuse_ros.planner import Plan, Progress
@@ -79,9 +79,7 @@ def plan_in_pieces(
                 follows = made[-1].begins + Duration(nanoseconds=round(1e9 * elapsed))
                 request = request.with_defaults(seed=nth_seed(made[0].plan.seed, i))
 
-            def share(now: Progress, done: int = i) -> None:
-                progress(replace(now, fraction=(done + now.fraction) / len(pieces)))
-
+            share = progress_of_piece(progress, i, len(pieces))
             made.append(plan_piece(request, follows, progress=share, cancelled=cancelled))
     except BaseException:
         if made:

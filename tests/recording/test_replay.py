@@ -9,7 +9,9 @@ import torch
 from motiondiffuse_ros.continuation import Start
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RecordingError
+from motiondiffuse_ros.joined_plan import join_plans
 from motiondiffuse_ros.manifest import shipped
+from motiondiffuse_ros.pieces import split
 from motiondiffuse_ros.recording import (
     difference,
     doubts,
@@ -58,6 +60,22 @@ def test_a_plan_that_continues_another_and_came_late_is_the_same_again(again, pl
     # and it does depend on what it continues
     apart = planner.plan(request)
     assert difference(record, apart.trajectory) != ""
+
+
+def test_a_plan_that_was_joined_from_pieces_is_the_same_again(again, planner):
+    request = MotionRequest.from_text("a person walks forward", 6.0, seed=3, candidates=1)
+    robot, plans, seams = get_robot("humanoid"), [], (2.0, 2.1)
+    for i, piece in enumerate(split(request, 2.0)):
+        start = None
+        if plans:
+            running, seam = TrajectoryState(plans[-1].trajectory), seams[i - 1]
+            start = Start(running.motion_up_to(robot, seam, 1.0, planner.fps), running.at(seam))
+        plans.append(planner.plan(piece.request, start=start))
+    plans[1] = planner.restarted(plans[1], TrajectoryState(plans[0].trajectory).at(2.05))
+    record, new = again(join_plans(request, plans, (2.05, seams[1])))
+    assert [piece.restarts for piece in record.pieces] == [0, 1, 0]
+    assert difference(record, new.trajectory) == ""
+    assert new.report.verdict == record.plan["report"]["verdict"]
 
 
 def test_an_edit_is_the_same_again_without_its_file(again, planner, plan, tmp_path):

@@ -11,6 +11,7 @@ from sensor_msgs.msg import JointState
 
 from motiondiffuse_ros.errors import ErrorCode
 from motiondiffuse_ros.msg import MotionPlan
+from motiondiffuse_ros.recording import difference, planner_of, read_recording, replay
 from motiondiffuse_ros.robots import get_robot
 from motiondiffuse_ros.ros.client import MotionClient
 from motiondiffuse_ros.ros.processes import ros_arguments, running
@@ -22,17 +23,16 @@ ROBOT = get_robot("humanoid")
 @pytest.fixture
 def client(graph) -> Iterator[MotionClient]:
     """A client of a node that plans three seconds at a time."""
+    arguments = ros_arguments(**FAST, horizon=3.0, record_dir=graph / "recordings")
     with (
-        running(
-            "motiondiffuse_ros.ros.node", ros_arguments(**FAST, horizon=3.0), graph / "node.log"
-        ) as process,
+        running("motiondiffuse_ros.ros.node", arguments, graph / "node.log") as process,
         MotionClient(lambda: process.poll() is None) as client,
     ):
         client.wait_for_node(START)
         yield client
 
 
-def test_pieces_follow_one_another_without_a_jump(client):
+def test_pieces_follow_one_another_without_a_jump(client, graph):
     pieces: list[MotionPlan] = []
     points: list[JointState] = []
     client.node.create_subscription(MotionPlan, "/motiondiffuse/plan", pieces.append, LATCHED)
@@ -72,6 +72,14 @@ def test_pieces_follow_one_another_without_a_jump(client):
     for point in points:
         asked = whole.at(seconds(point.header.stamp) - began)
         assert np.abs(np.degrees(asked.positions - point.position)).max() < 1.0
+
+    recorded = {path.stem.partition("_")[2]: path for path in (graph / "recordings").iterdir()}
+    joined = f"{pieces[0].plan_id}_whole"
+    assert set(recorded) == {joined, *(plan.plan_id for plan in pieces)}
+    record = read_recording(recorded[joined])
+    np.testing.assert_array_equal(record.trajectory["positions"], whole.trajectory.positions)
+    # in another process than the node's
+    assert difference(record, replay(record, planner_of(record)).trajectory) == ""
 
 
 def test_a_new_text_takes_over_from_the_piece_that_runs(client):
