@@ -36,7 +36,12 @@ def join_plans(
         track: Whether the whole is judged by simulated tracking too.
     """
     first = plans[0]
-    motion, offset = _joined_motion(plans, seams)
+    last = plans[-1]
+    motion, offset = _joined_motion(plans, seams, last.motion)
+    # what the last trajectory was made from goes on where that comes to stand
+    source = last.trajectory.source
+    if source is not None:
+        source = replace(source, motion=_joined_motion(plans, seams, source.motion)[0])
     robot = get_robot(first.robot)
     limits = robot if robot.is_canonical else None
     report = assess(motion, segments=request.segments, robot=limits, track=track)
@@ -51,7 +56,7 @@ def join_plans(
             candidates=first.request.candidates,
         ),
         motion=motion,
-        trajectory=_joined_trajectory([plan.trajectory for plan in plans], seams, motion, offset),
+        trajectory=_joined_trajectory([plan.trajectory for plan in plans], seams, source, offset),
         report=report,
         timings_s={
             stage: sum(plan.timings_s[stage] for plan in plans) for stage in first.timings_s
@@ -79,9 +84,11 @@ def _joined_origin(request: MotionRequest, plans: Sequence[Plan], seams: Sequenc
     )
 
 
-def _joined_motion(plans: Sequence[Plan], seams: Sequence[float]) -> tuple[Motion, float]:
-    """Return what the body does, and when the last plan's part of it begins [s]."""
-    robot, last = get_robot(plans[0].robot), plans[-1].motion
+def _joined_motion(
+    plans: Sequence[Plan], seams: Sequence[float], last: Motion
+) -> tuple[Motion, float]:
+    """Return what the body does, in the end a last motion, and when that begins [s]."""
+    robot = get_robot(plans[0].robot)
     done = [
         TrajectoryState(plan.trajectory).motion_up_to(robot, seam, seam, last.fps)
         for plan, seam in zip(plans, seams, strict=False)
@@ -96,7 +103,10 @@ def _joined_motion(plans: Sequence[Plan], seams: Sequence[float]) -> tuple[Motio
 
 
 def _joined_trajectory(
-    trajectories: Sequence[JointTrajectory], seams: Sequence[float], motion: Motion, offset: float
+    trajectories: Sequence[JointTrajectory],
+    seams: Sequence[float],
+    source: Source | None,
+    offset: float,
 ) -> JointTrajectory:
     kept = [
         trajectory.times < seam - _ROUNDING
@@ -116,10 +126,9 @@ def _joined_trajectory(
         )
     accelerations = [t.accelerations for t in trajectories if t.accelerations is not None]
     last = trajectories[-1]
-    source = None
-    if last.source is not None:
-        tail = offset + last.source.times
-        source = Source(motion, np.concatenate([times[: len(times) - len(tail)], tail]))
+    if source is not None:
+        tail = offset + source.times
+        source = replace(source, times=np.concatenate([times[: len(times) - len(tail)], tail]))
     return JointTrajectory(
         joint_names=last.joint_names,
         times=times,

@@ -73,6 +73,7 @@ class PlannerConfig:
         candidates: Motions to choose from, by match with the texts and by plausibility.
         control_rate: Rate of the trajectory, Hz.
         accelerations: Whether trajectories have them.
+        settle: Whether a trajectory whose last pose could not be held comes to stand after it.
         repair: Whether candidates are repaired where that makes them more plausible; not where
             they continue, edit or pass what was given.
         track: Whether the chosen motion is also judged by simulated tracking.
@@ -94,6 +95,7 @@ class PlannerConfig:
     candidates: int = 4
     control_rate: float = 50.0
     accelerations: bool = False
+    settle: bool = True
     repair: bool = True
     track: bool = True
     execution: str = NONE
@@ -312,6 +314,7 @@ class Planner:
             self.config.control_rate,
             state,
             accelerations=self.config.accelerations,
+            settle=self.config.settle,
         )
         origin = replace(plan.origin, restarts=(*plan.origin.restarts, state))
         return replace(plan, motion=motion, trajectory=trajectory, origin=origin)
@@ -364,6 +367,7 @@ class Planner:
                 config.control_rate,
                 start.state,
                 accelerations=config.accelerations,
+                settle=config.settle,
                 progress=lambda share: watch.advance("retargeting", share),
                 cancelled=watch.cancelled,
             ),

@@ -16,6 +16,8 @@ from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.robots.joining import MERGE, JoinedPaths, Paths, join
 from motiondiffuse_ros.robots.retargeting import RobotMotion, retarget
 from motiondiffuse_ros.robots.robot import Robot
+from motiondiffuse_ros.robots.stance import stance
+from motiondiffuse_ros.robots.standing_end import retarget_to_stand
 from motiondiffuse_ros.robots.start_state import StartState
 from motiondiffuse_ros.robots.time_scaling import come_to_rest, slow_down
 from motiondiffuse_ros.robots.trajectory import JointTrajectory, Source
@@ -38,6 +40,7 @@ def build_trajectory(
     start: StartState | None = None,
     *,
     accelerations: bool = False,
+    settle: bool = True,
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> JointTrajectory:
@@ -53,12 +56,17 @@ def build_trajectory(
     motion closes smoothly over half a second or a little more; one that is too wide for that is
     closed in an approach, and the motion follows after it.
 
+    A motion that would come to rest with a foot in the air, or with its centre of mass outside its
+    support, comes to stand first, in an ending that is appended (`settling`). `notes` says so, and
+    what is wrong where the last pose can still not be held.
+
     Args:
         robot: Who moves.
         motion: Finite; one frame yields a trajectory that holds it.
         rate: Points a second.
         start: Where the robot is when the trajectory begins; None = at the motion's first frame.
         accelerations: Whether to give them too.
+        settle: Whether a motion that ends in no stable stance comes to stand.
         progress: Told the share of the retargeting done, 0 to 1.
         cancelled: Asked while retargeting takes work.
 
@@ -71,8 +79,13 @@ def build_trajectory(
         raise RobotError(f"a trajectory needs a positive rate in Hz, got {rate}")
     if not (np.isfinite(motion.root).all() and np.isfinite(motion.rotations).all()):
         raise RobotError("the motion holds values that are not finite; nothing can follow it")
-    frames = retarget(robot, motion, progress, cancelled)
+    if settle and motion.frames > 1:
+        ended, frames = retarget_to_stand(robot, motion, STOP_WINDOW, progress, cancelled)
+    else:
+        ended, frames = motion, retarget(robot, motion, progress, cancelled)
     joints, notes = _inside_limits(robot, frames.joints)
+    if ended is not motion:
+        notes.append(f"comes to stand in the {ended.duration - motion.duration:.2f} s after it")
     if motion.frames == 1:
         frames = RobotMotion(*(np.repeat(a, 2, axis=0) for a in _arrays(frames)), fps=rate)
         joints = np.repeat(joints, 2, axis=0)
@@ -117,6 +130,10 @@ def build_trajectory(
         if start.root is not None:
             linear[0], angular[0] = start.root.linear_velocity, start.root.angular_velocity
     speeds = _to_rest(speeds)
+    if settle and motion.frames > 1:
+        last = np.concatenate([root_position[-1], orientation[-1], positions[-1]])
+        if not (found := stance(robot, last)).is_stable:
+            notes.append(f"ends in a pose that cannot be held: {found}")
     return JointTrajectory(
         joint_names=robot.joint_names,
         times=times,
@@ -128,7 +145,7 @@ def build_trajectory(
         root_angular_velocity=_to_rest(angular),
         notes=tuple(notes),
         accelerations=_differences(speeds, rate) if accelerations else None,
-        source=Source(motion, np.clip(path_times - approach, 0.0, motion.duration)),
+        source=Source(ended, np.clip(path_times - approach, 0.0, ended.duration)),
     )
 
 

@@ -71,6 +71,11 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "accelerations": ParameterSpec(
         _DEFAULT.accelerations, "trajectories have accelerations too", at_configure=True
     ),
+    "settle": ParameterSpec(
+        _DEFAULT.settle,
+        "a motion that ends in a pose that cannot be held comes to stand after it",
+        at_configure=True,
+    ),
     "track": ParameterSpec(
         _DEFAULT.track, "judge plans by simulated tracking too", at_configure=True
     ),
@@ -143,6 +148,7 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         candidates=parameters["candidates"],
         control_rate=parameters["control_rate"],
         accelerations=parameters["accelerations"],
+        settle=parameters["settle"],
         device=parameters["device"],
         track=parameters["track"],
         repair=parameters["repair"],

@@ -68,7 +68,8 @@ def test_a_joint_that_is_too_fast_slows_the_body_for_a_moment():
     rotations = still.rotations.copy()
     swing = 1.5 * np.tanh((np.arange(100) - 50) / 0.9)
     turned(rotations, "left_hip", 1, swing - 0.9)
-    trajectory = build_trajectory(ROBOT, replace(still, rotations=rotations))
+    # it ends on one leg
+    trajectory = build_trajectory(ROBOT, replace(still, rotations=rotations), settle=False)
     assert broken_promises(trajectory, ROBOT) == ()
     assert any("left_hip_y would turn at" in note for note in trajectory.notes)
     assert still.duration < trajectory.duration < still.duration + 0.5
