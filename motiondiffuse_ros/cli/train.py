@@ -20,6 +20,8 @@ from motiondiffuse_ros.training.config import TrainConfig
 class Train:
     """Train a denoiser; stop at any time and go on with --resume.
 
+    Under torchrun several processes train together (docs/training.md).
+
     Leaves in the output folder: checkpoint/ (to generate with), training_state.pt (to resume),
     config.json, log.jsonl and TensorBoard events (tensorboard --logdir OUT).
     """
@@ -71,6 +73,7 @@ def main(arguments: Sequence[str]) -> int:
     from motiondiffuse_ros.evaluation.evaluator import Evaluator
     from motiondiffuse_ros.text import load_text_encoder
     from motiondiffuse_ros.training.memory import keep_freed_memory
+    from motiondiffuse_ros.training.ranks import joined
     from motiondiffuse_ros.training.trainer import Trainer, TrainProgress
 
     keep_freed_memory()
@@ -81,35 +84,37 @@ def main(arguments: Sequence[str]) -> int:
         if options.critic is None
         else Evaluator.from_pretrained(options.critic, load_text_encoder("minilm"))
     )
-    console = Console()
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as bar:
-        captions = bar.add_task("captions", total=None)
-        trainer = Trainer(
-            corpus,
-            encoder,
-            denoiser,
-            options.training,
-            options.out,
-            resume=options.resume,
-            start=None if options.start is None else Checkpoint.from_pretrained(options.start),
-            critic=critic,
-            on_captions=lambda done, total: bar.update(captions, completed=done, total=total),
-        )
-        task = bar.add_task("training", total=options.training.minutes)
-
-        def show(p: TrainProgress) -> None:
-            validation = "" if p.validation is None else f", validation {p.validation:.3f}"
-            bar.update(
-                task,
-                completed=p.minutes,
-                description=f"step {p.step}, loss {p.loss:.3f}{validation}, "
-                f"{p.windows_per_second:.0f} windows/s",
+    with joined() as ranks:
+        console = Console(quiet=not ranks.first)
+        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        with Progress(*columns, console=console, disable=not ranks.first) as bar:
+            captions = bar.add_task("captions", total=None)
+            trainer = Trainer(
+                corpus,
+                encoder,
+                denoiser,
+                options.training,
+                options.out,
+                resume=options.resume,
+                start=None if options.start is None else Checkpoint.from_pretrained(options.start),
+                critic=critic,
+                ranks=ranks,
+                on_captions=lambda done, total: bar.update(captions, completed=done, total=total),
             )
+            task = bar.add_task("training", total=options.training.minutes)
 
-        # the shell lets background jobs ignore SIGINT; both stop the run with its state saved
-        for stop in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(stop, signal.default_int_handler)
-        trainer.run(show)
-    console.print(f"written to {options.out}")
+            def show(p: TrainProgress) -> None:
+                validation = "" if p.validation is None else f", validation {p.validation:.3f}"
+                bar.update(
+                    task,
+                    completed=p.minutes,
+                    description=f"step {p.step}, loss {p.loss:.3f}{validation}, "
+                    f"{p.windows_per_second:.0f} windows/s",
+                )
+
+            # the shell lets background jobs ignore SIGINT; both stop the run after its step
+            for stop in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(stop, lambda *_: trainer.stop())
+            trainer.run(show)
+        console.print(f"written to {options.out}")
     return 0

@@ -15,7 +15,7 @@ class TrainConfig:
 
     Attributes:
         minutes: Training time in all, over every resumed piece; the learning rate follows it.
-        batch_size: Windows a step.
+        batch_size: Windows a step, of each process.
         learning_rate: Peak of the cosine schedule.
         warmup_steps: Steps of linear warm-up.
         weight_decay: Of AdamW, on matrices.

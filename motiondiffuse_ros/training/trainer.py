@@ -12,7 +12,7 @@ from pathlib import Path
 import torch
 from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
 from diffusers.training_utils import EMAModel
-from torch import Tensor
+from torch import Tensor, nn
 from torch.utils.tensorboard import SummaryWriter
 
 from motiondiffuse_ros.corpus.store import Corpus
@@ -21,13 +21,15 @@ from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.diffusion.process import make_scheduler, to_clean
-from motiondiffuse_ros.errors import CheckpointError
+from motiondiffuse_ros.errors import Cancelled, CheckpointError
 from motiondiffuse_ros.evaluation.evaluator import CRITIC_FOLDER, Evaluator
 from motiondiffuse_ros.text import TextEncoder
 from motiondiffuse_ros.training.alignment import TextAlignment
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
+from motiondiffuse_ros.training.ranks import ALONE, Ranks
+from motiondiffuse_ros.training.text_to_prediction import TextToPrediction
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
@@ -46,7 +48,7 @@ class TrainProgress:
         minutes: Training time so far, over all pieces.
         loss: Running mean of the training loss.
         validation: Last validation loss (unweighted), None before the first.
-        windows_per_second: Speed of late.
+        windows_per_second: Speed of late, of all processes.
     """
 
     step: int
@@ -60,7 +62,8 @@ class Trainer:
     """Trains a denoiser on a corpus; can be stopped at any time and resumed.
 
     Writes under `out`: checkpoint/ (averaged weights and the critic, as shipped),
-    training_state.pt (to resume), config.json, log.jsonl and TensorBoard events.
+    training_state.pt (to resume), config.json, log.jsonl and TensorBoard events. Of processes that
+    train together the first does so, on its own windows' losses.
     """
 
     def __init__(
@@ -74,6 +77,7 @@ class Trainer:
         resume: bool = False,
         start: Checkpoint | None = None,
         critic: Evaluator | None = None,
+        ranks: Ranks = ALONE,
         on_captions: Callable[[int, int], None] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
@@ -84,9 +88,10 @@ class Trainer:
                 f"{corpus.representation.name}, which cannot be trained on yet"
             )
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
-        self._clock = clock
+        self._ranks, self._clock, self._stopping = ranks, clock, False
         torch.manual_seed(config.seed)
-        self._denoiser = Denoiser(denoiser_config)
+        self.denoiser = Denoiser(denoiser_config).to(ranks.device)
+        self._model = TextToPrediction(self.denoiser)
         self._started_from = None if start is None else start.sha256
         if start is not None:
             self._start_from(start)
@@ -94,13 +99,13 @@ class Trainer:
             self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99), fused=True
         )
         self._ema = EMAModel(
-            self._denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
+            self.denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
         )
         scheduler = make_scheduler("ddpm", denoiser_config)
         assert isinstance(scheduler, DDPMScheduler)
         self._scheduler = scheduler
         self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
-        self._bf16 = use_bf16(config.precision)
+        self._bf16 = use_bf16(config.precision, ranks.device)
         self._step, self._seconds = 0, 0.0
         out.mkdir(parents=True, exist_ok=True)
         if resume:
@@ -125,32 +130,51 @@ class Trainer:
             train,
             statements=config.statements,
             crop=config.crop,
-            seed=config.seed + self._step,
+            seed=ranks.seed(config.seed + self._step),
             **settings,
         ).batches(config.batch_size)
         held_out = WindowSampler(corpus, val, statements=0.0, seed=_VALIDATION_SEED, **settings)
         batches = held_out.batches(config.batch_size)
         self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]
-        self._record_settings()
+        self._together = ranks.together(self._model)
+        if ranks.first:
+            self._record_settings()
+        else:  # the first goes on from the draws of its weights
+            torch.manual_seed(ranks.seed(config.seed + self._step))
+
+    def stop(self) -> None:
+        """Ask for the end of `run` after the present step, also from a signal handler."""
+        self._stopping = True
 
     def run(self, on_progress: Callable[[TrainProgress], None] | None = None) -> None:
-        """Train until `minutes` are used up; saves on the way and at the end, also when stopped."""
+        """Train until `minutes` are used up; saves on the way and at the end, also when stopped.
+
+        Args:
+            on_progress: Told of every step, in the first process.
+
+        Raises:
+            Cancelled: After saving, if `stop` was called in any process.
+        """
         config = self._config
-        writer = SummaryWriter(str(self._out))
+        writer = SummaryWriter(str(self._out)) if self._ranks.first else None
+        stopping = False
         validation: float | None = None
         mean_loss, saved, began = 0.0, self._seconds, self._clock()
         before = self._seconds
         rate, lap = 0.0, self._clock()
         try:
-            while self._seconds < 60.0 * config.minutes:
+            while not stopping and self._seconds < 60.0 * config.minutes:
                 losses, alignment = self._train_step(next(self._windows))
                 self._step += 1
                 total = losses.features.item()
                 mean_loss = total if mean_loss == 0.0 else 0.98 * mean_loss + 0.02 * total
                 now = self._clock()
-                speed = config.batch_size / (now - lap)
+                speed = config.batch_size * self._ranks.size / (now - lap)
                 rate, lap = (speed if rate == 0.0 else 0.95 * rate + 0.05 * speed), now
-                self._seconds = before + now - began
+                elapsed = before + now - began
+                self._seconds, stopping = self._ranks.agree(elapsed, self._stopping)
+                if writer is None:
+                    continue
                 if self._step % 20 == 0:
                     self._log(writer, losses, alignment, rate)
                 if self._step % config.validate_steps == 0:
@@ -166,36 +190,40 @@ class Trainer:
                         TrainProgress(self._step, self._seconds / 60.0, mean_loss, validation, rate)
                     )
         finally:
-            self.save()
-            writer.close()
+            if writer is not None:
+                self.save()
+                writer.close()
+        self._ranks.wait()  # for the files
+        if stopping:
+            raise Cancelled(f"stopped after {self._step} steps; go on with --resume")
 
     @torch.no_grad()
     def validate(self) -> float:
         """Return the averaged weights' unweighted loss on fixed held-out windows and noise."""
-        parameters = list(self._denoiser.parameters())
+        parameters = list(self.denoiser.parameters())
         self._ema.store(parameters)
         self._ema.copy_to(parameters)
-        self._denoiser.eval()
+        self.denoiser.eval()
         generator = torch.Generator().manual_seed(_VALIDATION_SEED)
-        total = [self._forward(b, generator, 0.0)[0].plain.item() for b in self._validation]
-        self._denoiser.train()
+        losses = [self._forward(self._model, b, generator, 0.0)[0] for b in self._validation]
+        self.denoiser.train()
         self._ema.restore(parameters)
-        return sum(total) / len(total)
+        return sum(loss.plain.item() for loss in losses) / len(losses)
 
     def save(self) -> None:
         """Write the averaged weights and the state to resume from."""
-        parameters = list(self._denoiser.parameters())
+        parameters = list(self.denoiser.parameters())
         self._ema.store(parameters)
         self._ema.copy_to(parameters)
-        Checkpoint(self._denoiser, self._corpus.statistics, self._encoder.sha256).save_pretrained(
+        Checkpoint(self.denoiser, self._corpus.statistics, self._encoder.sha256).save_pretrained(
             self._out / CHECKPOINT_FOLDER
         )
         self._ema.restore(parameters)
         if self._critic is not None:
             self._critic.save_pretrained(self._out / CHECKPOINT_FOLDER / CRITIC_FOLDER)
         state = {
-            "denoiser_config": self._denoiser.config.to_dict(),
-            "denoiser": self._denoiser.state_dict(),
+            "denoiser_config": self.denoiser.config.to_dict(),
+            "denoiser": self.denoiser.state_dict(),
             "optimizer": self._optimizer.state_dict(),
             "ema": self._ema.state_dict(),
             "started_from": self._started_from,
@@ -209,7 +237,8 @@ class Trainer:
     def _train_step(self, batch: WindowBatch) -> tuple[Losses, Tensor]:
         for group in self._optimizer.param_groups:
             group["lr"] = self._learning_rate()
-        losses, alignment = self._forward(batch, None, self._config.condition_dropout)
+        dropout = self._config.condition_dropout
+        losses, alignment = self._forward(self._together, batch, None, dropout)
         total = (
             losses.features
             + self._config.difference_weight * losses.difference
@@ -220,34 +249,37 @@ class Trainer:
         )
         self._optimizer.zero_grad(set_to_none=True)
         total.backward()
-        torch.nn.utils.clip_grad_norm_(self._denoiser.parameters(), self._config.gradient_clip)
+        torch.nn.utils.clip_grad_norm_(self.denoiser.parameters(), self._config.gradient_clip)
         self._optimizer.step()
-        self._ema.step(self._denoiser.parameters())
+        self._ema.step(self.denoiser.parameters())
         return losses, alignment
 
     def _forward(
-        self, batch: WindowBatch, generator: torch.Generator | None, dropout: float
+        self,
+        model: nn.Module,
+        batch: WindowBatch,
+        generator: torch.Generator | None,
+        dropout: float,
     ) -> tuple[Losses, Tensor]:
         clean = batch.features
         noise = torch.randn(clean.shape, generator=generator)
         # validation, which brings its generator, is over all steps alike
         noisiest = self._config.noisiest if generator is None else 0.0
-        steps = draw_steps(self._denoiser.config.train_steps, len(clean), noisiest, generator)
+        steps = draw_steps(self.denoiser.config.train_steps, len(clean), noisiest, generator)
         drop = torch.rand(len(clean), generator=generator) < dropout
         texts = ["" if d else text for d, text in zip(drop.tolist(), batch.texts, strict=True)]
         tokens = self._captions.batch(texts)
         noisy = self._scheduler.add_noise(clean, noise, steps)  # type: ignore[arg-type]
-        with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
-            conditioning = self._denoiser.condition(tokens.states, tokens.mask)
-            output = self._denoiser(noisy, steps, batch.lengths, conditioning)
+        with torch.autocast(self._ranks.device.type, torch.bfloat16, enabled=self._bf16):
+            output, pooled = model(tokens, noisy, steps, batch.lengths)
         alpha = self._scheduler.alphas_cumprod[steps]
-        kind = self._denoiser.config.prediction_type
+        kind = self.denoiser.config.prediction_type
         predicted = to_clean(kind, output, noisy, alpha[:, None, None])
         weight = noise_weight(alpha, self._config.snr_limit)
         losses = self._loss(predicted, clean, batch.lengths, self._step, weight)
         if self._alignment is None:
             return losses, torch.zeros(())
-        return losses, self._alignment(conditioning.pooled, texts)
+        return losses, self._alignment(pooled, texts)
 
     def _learning_rate(self) -> float:
         warmup = min(1.0, (self._step + 1) / max(self._config.warmup_steps, 1))
@@ -256,7 +288,7 @@ class Trainer:
         return self._config.learning_rate * warmup * (0.505 + 0.495 * math.cos(math.pi * done))
 
     def _start_from(self, start: Checkpoint) -> None:
-        theirs, ours = start.denoiser.config, self._denoiser.config
+        theirs, ours = start.denoiser.config, self.denoiser.config
         if theirs != ours:
             differing = [k for k, v in theirs.to_dict().items() if ours.to_dict()[k] != v]
             raise CheckpointError(
@@ -266,11 +298,11 @@ class Trainer:
             raise CheckpointError(
                 "the weights to start from were trained with another text encoder"
             )
-        self._denoiser.load_state_dict(start.denoiser.state_dict())
+        self.denoiser.load_state_dict(start.denoiser.state_dict())
 
     def _parameter_groups(self) -> list[dict]:
-        matrices = [p for p in self._denoiser.parameters() if p.ndim > 1]
-        rest = [p for p in self._denoiser.parameters() if p.ndim <= 1]
+        matrices = [p for p in self.denoiser.parameters() if p.ndim > 1]
+        rest = [p for p in self.denoiser.parameters() if p.ndim <= 1]
         return [
             {"params": matrices, "weight_decay": self._config.weight_decay},
             {"params": rest, "weight_decay": 0.0},
@@ -279,16 +311,17 @@ class Trainer:
     def _load_state(self) -> None:
         path = self._out / STATE_FILE
         try:
-            state = torch.load(path, weights_only=True)
+            state = torch.load(path, weights_only=True, map_location="cpu")
         except FileNotFoundError as error:
             raise CheckpointError(f"nothing to resume: {path} does not exist") from error
         except Exception as error:  # torch.load raises many kinds for a truncated file
             raise CheckpointError(f"{path}: cannot be resumed from ({error})") from error
-        if state["denoiser_config"] != self._denoiser.config.to_dict():
+        if state["denoiser_config"] != self.denoiser.config.to_dict():
             raise CheckpointError(f"{path}: was trained with another denoiser configuration")
-        self._denoiser.load_state_dict(state["denoiser"])
+        self.denoiser.load_state_dict(state["denoiser"])
         self._optimizer.load_state_dict(state["optimizer"])
         self._ema.load_state_dict(state["ema"])
+        self._ema.to(self._ranks.device)
         self._step, self._seconds = state["step"], state["seconds"]
         self._started_from = state.get("started_from")
         torch.manual_seed(self._config.seed + self._step)
@@ -296,9 +329,10 @@ class Trainer:
     def _record_settings(self) -> None:
         settings = {
             "training": self._config.to_dict(),
-            "denoiser": self._denoiser.config.to_dict(),
-            "parameters": sum(p.numel() for p in self._denoiser.parameters()),
+            "denoiser": self.denoiser.config.to_dict(),
+            "parameters": sum(p.numel() for p in self.denoiser.parameters()),
             "started_from": self._started_from,
+            "processes": self._ranks.size,
             "train_clips": len(self._corpus.split("train")),
         }
         (self._out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
