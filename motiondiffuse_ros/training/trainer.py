@@ -64,6 +64,9 @@ class Trainer:
     Writes under `out`: checkpoint/ (averaged weights and the critic, as shipped),
     training_state.pt (to resume), config.json, log.jsonl and TensorBoard events. Of processes that
     train together the first does so, on its own windows' losses.
+
+    Attributes:
+        denoiser: What is trained.
     """
 
     def __init__(
