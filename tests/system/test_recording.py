@@ -1,13 +1,17 @@
 """A node that records: each plan in a file of its own, which gives the same plan again."""
 
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from ros_graph import ANSWER, FAST, START
 from ros_operator import Operator
+from ros_plans import goal, ignore, states
 
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionRequest, MotionSegment
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.recording import difference, planner_of, read_recording, replay
 from motiondiffuse_ros.ros.processes import ros_arguments, running
@@ -15,6 +19,27 @@ from motiondiffuse_ros.ros.processes import ros_arguments, running
 pytestmark = pytest.mark.skipif(
     not (shipped_weights() / "config.json").is_file(), reason="no weights are shipped yet"
 )
+
+
+def mount(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["mount", *map(str, arguments)], capture_output=True, text=True)
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of 64 KiB, less than any recording takes."""
+    folder = tmp_path / "small disk"
+    folder.mkdir()
+    try:
+        mounted = mount("-t", "tmpfs", "-o", "size=64k", "tmpfs", folder)
+    except FileNotFoundError:
+        pytest.skip("there is no `mount`")
+    if mounted.returncode:
+        pytest.skip(f"no leave to mount a file system: {mounted.stderr.strip()}")
+    try:
+        yield folder
+    finally:
+        subprocess.run(["umount", "--lazy", folder], check=True)
 
 
 def test_plans_are_recorded_and_where_they_cannot_be_they_are_published(graph):
@@ -29,9 +54,7 @@ def test_plans_are_recorded_and_where_they_cannot_be_they_are_published(graph):
         operator.wait_for_node(START)
 
         def plan(text, seconds):
-            segment = MotionSegment(text=text, start=0.0, end=seconds)
-            goal = MotionRequest(segments=[segment])
-            result = operator.generate(goal, lambda feedback: None, ANSWER)
+            result = operator.generate(goal(text, seconds), ignore, ANSWER)
             assert result.error_code == ErrorCode.SUCCESS, result.message
             return result.plan
 
@@ -60,3 +83,38 @@ def test_plans_are_recorded_and_where_they_cannot_be_they_are_published(graph):
         np.testing.assert_array_equal(points, record.trajectory["positions"])
     # in another process than the node's
     assert difference(second, replay(second, planner_of(second)).trajectory) == ""
+
+
+def test_a_full_disk_hinders_no_plan_and_keeps_no_half_file(graph, small_disk):
+    arguments = ros_arguments(**FAST, record_dir=small_disk)
+    log = graph / "node.log"
+    with (
+        running("motiondiffuse_ros.ros.node", arguments, log) as process,
+        Operator(lambda: process.poll() is None) as operator,
+    ):
+        operator.wait_for_node(START)
+
+        def plan():
+            result = operator.generate(goal("a person waves", 2.0), ignore, ANSWER)
+            assert result.error_code == ErrorCode.SUCCESS, result.message
+            return result.plan
+
+        states(plan())  # checks what it promises
+        operator.wait(
+            lambda: "No space left on device" in operator.health.message,
+            ANSWER,
+            "a word on /diagnostics",
+        )
+        assert operator.health.level == DiagnosticStatus.WARN
+        assert list(small_disk.iterdir()) == []
+        # and once there is room again it records again
+        assert mount("-o", "remount,size=64m", small_disk).returncode == 0
+        recorded = plan()
+        operator.wait(
+            lambda: operator.health.level == DiagnosticStatus.OK, ANSWER, "the end of the problem"
+        )
+        (file,) = small_disk.iterdir()
+        assert file.stem.endswith(f"_{recorded.plan_id}")
+        read_recording(file)
+    (line,) = (line for line in log.read_text().splitlines() if "cannot be written" in line)
+    assert "No space left on device" in line
