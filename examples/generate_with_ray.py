@@ -259,7 +259,7 @@ def _make(missing: Sequence[Job], total: int, options: Options) -> int:
             results.write(json.dumps(row) + "\n")
             results.flush()
             told = ", ".join(f"{k} {v}" for k, v in outcome.summary.items())
-            console.print(f"{job.name}: {told}", highlight=False, markup=False)
+            console.print(f"{job.name}: {told}", highlight=False, markup=False, soft_wrap=True)
             bar.advance(task)
     console.print(f"{len(missing) - failures} written to {options.out}, {failures} failed")
     return 1 if failures else 0
