@@ -3,9 +3,9 @@
     python benchmarks/fit_score.py --corpus runs/corpus
 
 Draws clips on level ground of both sets, breaks each in some of the ways of
-`benchmarks/corruptions.py`, and fits `physics.fitted_score.FittedScore` by logistic regression with
-a penalty on the weights. Real and broken motions weigh the same in total. A clip's stillest pose,
-held for a while, counts as real where the floor can carry it: to stand still is no fault.
+`benchmarks/corruptions.py`, and fits `physics.fitted_score.FittedScore` by stochastic gradients
+with dropout and weight decay. Real and broken motions weigh the same in total. A clip's stillest
+pose, held for a while, counts as real where the floor can carry it: to stand still is no fault.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import torch
 import tyro
 from rich.console import Console
 from rich.progress import track
-from scipy.optimize import minimize
 from scipy.special import expit
+from torch import nn
 
 from benchmarks.corruptions import CORRUPTIONS
 from benchmarks.level_clips import level_clips
@@ -29,7 +30,7 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics import fitted_score
 from motiondiffuse_ros.physics.body_states import humanoid_states
 from motiondiffuse_ros.physics.dynamics import state_dynamics
-from motiondiffuse_ros.physics.fitted_score import KNOTS, FittedScore
+from motiondiffuse_ros.physics.fitted_score import RANGE, FittedScore
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.measures import MIN_FRAMES
 from motiondiffuse_ros.physics.statistics import statistics
@@ -39,6 +40,26 @@ _FILE = Path(fitted_score.__file__).with_name("fitted_score.json")
 _STILL_FRAMES = 60
 _FOLDS = 5
 _CARRIED = 0.05  # body weights, up to which the floor carries a still pose
+
+
+@dataclass(frozen=True)
+class Training:
+    """How the network is fitted."""
+
+    switches: int = 128
+    """In its one layer."""
+    epochs: int = 100
+    """Passes over the motions."""
+    batch: int = 256
+    """Motions in a step."""
+    learning_rate: float = 4e-3
+    """At its highest."""
+    decay: float = 0.3
+    """Of the weights."""
+    dropout: float = 0.3
+    """Of the switches; of the statistics a third of it."""
+    seed: int = 0
+    """Of weights and order."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +74,8 @@ class Arguments:
     """Corruptions of each clip, drawn at random."""
     max_seconds: float = 8.0
     """Of each clip."""
-    penalty: float = 0.002
-    """On the squared weights."""
+    training: Training = Training()
+    """Of the network."""
     plausible: float = 0.9
     """Share of real clips, held out, that the score alone calls plausible."""
     seed: int = 1
@@ -76,8 +97,8 @@ class Samples:
 def main(arguments: Arguments) -> None:
     """Fit, print how well it fits, write."""
     samples = _samples(arguments)
-    model = _fitted(samples, arguments.penalty)
-    scores = _held_out_scores(samples, arguments.penalty)
+    model = _fitted(samples, arguments.training)
+    scores = _held_out_scores(samples, arguments.training)
     real = scores[samples.kinds == REAL]
     model = replace(
         model,
@@ -93,15 +114,14 @@ def main(arguments: Arguments) -> None:
     _FILE.write_text(json.dumps(content) + "\n", encoding="utf-8")
 
 
-def _held_out_scores(samples: Samples, penalty: float) -> np.ndarray:
+def _held_out_scores(samples: Samples, training: Training) -> np.ndarray:
     """Return the score of each motion by a model that was fitted without its clip [N]."""
     scores = np.empty(len(samples.kinds))
     for fold in range(_FOLDS):
         out = samples.clips % _FOLDS == fold
         rest = Samples(samples.names, *(a[~out] for a in _arrays(samples)))
-        model = _fitted(rest, penalty)
-        odds = np.tensordot(model.basis(samples.values[out]), model.weights, 2)
-        scores[out] = expit(model.bias + odds)
+        model = _fitted(rest, training)
+        scores[out] = expit(model.odds(model.scaled(samples.values[out])))
     return scores
 
 
@@ -152,34 +172,57 @@ def _still(motion: Motion) -> Motion:
     return replace(motion, root=motion.root[frames], rotations=motion.rotations[frames])
 
 
-def _fitted(samples: Samples, penalty: float) -> FittedScore:
+def _fitted(samples: Samples, training: Training) -> FittedScore:
     real = samples.values[samples.kinds == REAL]
     low, high = np.quantile(real, (0.05, 0.95), axis=0)
-    count = len(samples.names)
+    count, switches = len(samples.names), training.switches
     empty = FittedScore(
         names=tuple(samples.names),
         centre=np.median(real, axis=0),
         spread=(high - low) / 2.0 + 1e-6,
-        knots=np.quantile(real, KNOTS, axis=0),
-        weights=np.zeros((len(KNOTS) + 1, count)),
+        range=np.quantile(real, RANGE, axis=0),
+        weights=np.zeros((switches, count)),
+        offsets=np.zeros(switches),
+        outward=np.zeros(switches),
         bias=0.0,
         marginal_below=0.0,
     )
-    basis = empty.basis(samples.values).reshape(len(samples.values), -1)
-    good = np.isin(samples.kinds, (REAL, STILL))
-    share = np.where(good, 0.5 / good.sum(), 0.5 / (~good).sum())
+    torch.manual_seed(training.seed)
+    inward, outward = nn.Linear(count, switches), nn.Linear(switches, 1)
+    network = nn.Sequential(
+        nn.Dropout(training.dropout / 3.0),
+        inward,
+        nn.SiLU(),
+        nn.Dropout(training.dropout),
+        outward,
+        nn.Flatten(0),
+    )
+    _train(network, empty.scaled(samples.values), np.isin(samples.kinds, (REAL, STILL)), training)
+    weights, offsets, out, bias = (
+        parameter.detach().double().numpy()
+        for layer in (inward, outward)
+        for parameter in (layer.weight, layer.bias)
+    )
+    return replace(empty, weights=weights, offsets=offsets, outward=out[0], bias=float(bias.item()))
 
-    def cost(unknowns: np.ndarray) -> tuple[float, np.ndarray]:
-        odds = unknowns[0] + basis @ unknowns[1:]
-        loss = share @ (np.logaddexp(0.0, odds) - good * odds)
-        slope = share * (expit(odds) - good)
-        penalised = penalty * unknowns[1:]
-        gradient = np.append(slope.sum(), slope @ basis + penalised)
-        return float(loss + penalised @ unknowns[1:] / 2.0), gradient
 
-    start = np.zeros(basis.shape[1] + 1)
-    found = minimize(cost, start, jac=True, method="L-BFGS-B", options={"maxiter": 500}).x
-    return replace(empty, bias=float(found[0]), weights=found[1:].reshape(-1, count))
+def _train(network: nn.Module, scaled: np.ndarray, real: np.ndarray, training: Training) -> None:
+    x, y = torch.tensor(scaled, dtype=torch.float32), torch.tensor(real, dtype=torch.float32)
+    share = torch.where(y > 0.0, 0.5 / y.mean(), 0.5 / (1.0 - y.mean()))
+    steps = training.epochs * len(x) // training.batch
+    optimizer = torch.optim.AdamW(
+        network.parameters(), lr=training.learning_rate, weight_decay=training.decay
+    )
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, training.learning_rate, steps)
+    for _ in range(steps):
+        drawn = torch.randint(len(x), (training.batch,))
+        loss = nn.functional.binary_cross_entropy_with_logits(
+            network(x[drawn]), y[drawn], share[drawn]
+        )
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        rate.step()
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import logit
 from synthetic import drifting, moved, standing, waving
 
 from motiondiffuse_ros.motion import Motion
@@ -38,10 +39,13 @@ def test_broken_motion_scores_low_and_the_statistic_is_named(broken, words):
     assert any(word in line for word in words for line in told), told
 
 
-def test_parts_add_up_to_the_score():
-    model, values = fitted_score(), _statistics(standing(40))
-    odds = model.bias + model.parts(values).sum()
-    assert model.score(values) == pytest.approx(1.0 / (1.0 + np.exp(-odds)))
+def test_a_part_is_what_the_usual_value_would_change():
+    model, values = fitted_score(), _statistics(waving(60))
+    parts = model.parts(values)
+    for n in (0, int(parts.argmin()), int(parts.argmax())):
+        usual = {**values, model.names[n]: model.centre[n]}
+        change = logit(model.score(values)) - logit(model.score(usual))
+        assert parts[n] == pytest.approx(change, abs=1e-6)
 
 
 def test_far_off_values_do_not_overflow():

@@ -7,7 +7,10 @@ from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
 from motiondiffuse_ros.physics.statistics.effort import effort
 from motiondiffuse_ros.physics.statistics.footing import footing
+from motiondiffuse_ros.physics.statistics.gait import gait
+from motiondiffuse_ros.physics.statistics.ground_plane import ground_plane
 from motiondiffuse_ros.physics.statistics.posture import posture
+from motiondiffuse_ros.physics.statistics.stillness import stillness
 from motiondiffuse_ros.physics.statistics.tempo import tempo
 
 
@@ -24,4 +27,7 @@ def statistics(motion: Motion, states: BodyStates, dynamics: Dynamics) -> dict[s
         **posture(motion, states, dynamics),
         **effort(states, dynamics),
         **tempo(motion, states),
+        **gait(motion, states, dynamics),
+        **ground_plane(motion, states, dynamics),
+        **stillness(states, dynamics),
     }
