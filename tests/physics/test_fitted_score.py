@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.special import logit
-from synthetic import drifting, moved, standing, waving
+from synthetic import drifting, moved, waving
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.physics.body_states import humanoid_states
