@@ -123,7 +123,9 @@ def take_over(
 def main(options: Options) -> None:
     """Print the table and write the figures."""
     planner = Planner(
-        PlannerConfig(weights=options.weights, steps=options.steps, candidates=1, track=False)
+        PlannerConfig(
+            weights=options.weights, steps=options.steps, candidates=1, track=False, settle=False
+        )
     )
     rng = np.random.default_rng(options.seed)
     plan = planner.plan(MotionRequest.from_text(TEXTS[0], options.seconds, seed=options.seed))
