@@ -65,11 +65,13 @@ class Attention(nn.Module):
         x = self.context_norm(x)
         return self.summary(self.key(x), self.value(x), mask)
 
-    def summary(self, keys: Tensor, values: Tensor, mask: Tensor) -> AttentionContext:
-        """Summarise keys and values [B, L, width] with mask [B, L]."""
+    def summary(self, keys: Tensor, values: Tensor, mask: Tensor | None) -> AttentionContext:
+        """Summarise keys and values [B, L, width] with mask [B, L]; without one all count."""
         if self.kind == "full":
             return AttentionContext(self._split(keys), self._split(values), mask)
-        keys = keys.masked_fill(~mask[..., None], _MASKED).softmax(dim=1)
+        if mask is not None:
+            keys = keys.masked_fill(~mask[..., None], _MASKED)
+        keys = keys.softmax(dim=1)
         return AttentionContext(None, self._split(keys).transpose(2, 3) @ self._split(values), None)
 
     def forward(self, x: Tensor, context: AttentionContext) -> Tensor:
@@ -84,8 +86,7 @@ class Attention(nn.Module):
             queries = queries.softmax(dim=-1, dtype=torch.float32).to(context.values.dtype)
             y = queries.transpose(1, 2) @ context.values
         else:
-            assert context.mask is not None
-            mask = context.mask[:, None, None, :]
+            mask = None if context.mask is None else context.mask[:, None, None, :]
             queries = self._split(queries)
             y = F.scaled_dot_product_attention(queries, context.keys, context.values, mask)
         return y.transpose(1, 2).flatten(2)

@@ -140,6 +140,8 @@ class PreparedDenoiser:
         x = F.pad(x * frame_mask[..., None], (0, 0, 0, -frames % patch)).to(dtype)
         frame_mask = F.pad(frame_mask, (0, -frames % patch))
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
+        if token_mask.all():
+            token_mask = None
         tokens = self._patch_in(x.unflatten(1, (-1, patch)).flatten(2))
         tokens = tokens + self._positions[: tokens.shape[1]]
         pieces = iter(styles[:, None].split(self._style_widths, dim=-1))
@@ -162,7 +164,7 @@ class PreparedDenoiser:
         self,
         layer: _Layer,
         tokens: Tensor,
-        mask: Tensor,
+        mask: Tensor | None,
         text: AttentionContext,
         styles: Iterator[Tensor],
     ) -> None:
