@@ -36,7 +36,7 @@ _QUICK, _CALM = 2.2, 1.0  # m/s, against the body
 _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
-_STEPS, _MARCH_STEPS = 4, 4
+_STEPS = 4
 _FULL_TURN = np.radians((300.0, 430.0))
 _LEAP, _KNEE_UP = 0.4, 0.2  # m ahead, m of a knee below its hip
 
@@ -244,8 +244,8 @@ def _marches(body: _Body) -> bool:
     lifts = []
     for side in ("left", "right"):
         below = body.level(f"{side}_hip") - body.level(f"{side}_knee")
-        lifts.append(sum(1 for _ in runs(below < _KNEE_UP)))
-    return min(lifts) * 2 >= _MARCH_STEPS
+        lifts.append(len(runs(below < _KNEE_UP)))
+    return min(lifts) > 1
 
 
 def _hands(body: _Body, fps: float) -> list[Finding]:

@@ -251,6 +251,7 @@ def _voices(sentence: str) -> tuple[str, ...]:
     """Return a sentence about a person, about others, and as it is said to somebody."""
     deed = sentence.removeprefix(_PERSON)
     told = _BODY.sub("your ", _VERB.sub(r"\1\2", deed))
+    # twice: users tell rather than describe
     return sentence, *(other + deed for other in _OTHERS), told, told
 
 

@@ -20,7 +20,7 @@ from motiondiffuse_ros.motion.rotations import Array
 STEP = 0.8
 """Within this time [s] a step has to come that catches the body."""
 
-_GRAVITY = 9.81
+GRAVITY = 9.81
 _LOWEST_CENTRE = 0.1
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
 # a convex hull is known by how far it reaches in each direction; 32 err by less than 0.5 %
@@ -52,7 +52,7 @@ def balance(centre: Array, places: Array, touching: NDArray[np.bool_], fps: floa
     """
     velocity = np.gradient(centre[:, :2], 1.0 / fps, axis=0)
     height = np.maximum(centre[:, 2:], _LOWEST_CENTRE)
-    capture = centre[:, :2] + velocity * np.sqrt(height / _GRAVITY)
+    capture = centre[:, :2] + velocity * np.sqrt(height / GRAVITY)
     used = np.flatnonzero(touching.any(axis=0))
     reach = places[:, used, :2] @ _DIRECTIONS.T
     support = np.max(reach, axis=1, where=touching[:, used, None], initial=-np.inf)

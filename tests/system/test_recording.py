@@ -2,6 +2,7 @@
 
 import subprocess
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from ros_operator import Operator
 from ros_plans import goal, ignore, states
 
 from motiondiffuse_ros.errors import ErrorCode
+from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.recording import difference, planner_of, read_recording, replay
 from motiondiffuse_ros.ros.processes import ros_arguments, running
@@ -19,6 +21,12 @@ from motiondiffuse_ros.ros.processes import ros_arguments, running
 pytestmark = pytest.mark.skipif(
     not (shipped_weights() / "config.json").is_file(), reason="no weights are shipped yet"
 )
+
+
+def planned(operator: Operator, text: str, length: float) -> MotionPlan:
+    result = operator.generate(goal(text, length), ignore, ANSWER)
+    assert result.error_code == ErrorCode.SUCCESS, result.message
+    return result.plan
 
 
 def mount(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -52,12 +60,7 @@ def test_plans_are_recorded_and_where_they_cannot_be_they_are_published(graph):
         Operator(lambda: process.poll() is None) as operator,
     ):
         operator.wait_for_node(START)
-
-        def plan(text, seconds):
-            result = operator.generate(goal(text, seconds), ignore, ANSWER)
-            assert result.error_code == ErrorCode.SUCCESS, result.message
-            return result.plan
-
+        plan = partial(planned, operator)
         # the second goes on from the first, which is still executed
         plans = [plan("a person walks forward", 30.0), plan("a person waves", 2.0)]
         assert operator.set("record_dir", str(blocked)) == ""
@@ -93,12 +96,7 @@ def test_a_full_disk_hinders_no_plan_and_keeps_no_half_file(graph, small_disk):
         Operator(lambda: process.poll() is None) as operator,
     ):
         operator.wait_for_node(START)
-
-        def plan():
-            result = operator.generate(goal("a person waves", 2.0), ignore, ANSWER)
-            assert result.error_code == ErrorCode.SUCCESS, result.message
-            return result.plan
-
+        plan = partial(planned, operator, "a person waves", 2.0)
         states(plan())  # checks what it promises
         operator.wait(
             lambda: "No space left on device" in operator.health.message,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
 
 PLANTED_SPEED = 0.25
@@ -17,6 +19,12 @@ def quantiles(name: str, values: Array, *shares: int) -> dict[str, float]:
     """Return quantiles [percent] under names that end in them."""
     found = np.quantile(values, np.array(shares) / 100.0)
     return {f"{name}_{share}": float(q) for share, q in zip(shares, found, strict=True)}
+
+
+def from_root(motion: Motion) -> Array:
+    """Return the joints [T, J, 3] from the root, in the frame whose x axis is ahead."""
+    heading = rot.about_axis(2, -motion.heading)
+    return rot.rotate(heading[:, None], motion.positions - motion.positions[:, :1])
 
 
 def in_heading(motion_heading: Array, vectors: Array) -> Array:

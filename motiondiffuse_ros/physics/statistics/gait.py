@@ -10,11 +10,12 @@ from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.motion.spans import runs
+from motiondiffuse_ros.physics.balance import GRAVITY
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import log_of, planted
+from motiondiffuse_ros.physics.statistics.frames import from_root, log_of, planted
 
-_LEG_LENGTH, _GRAVITY = 0.85, 9.81
+_LEG_LENGTH = 0.85
 _IN_FLIGHT = 0.04  # m above the lowest place of both soles in the motion
 _USUAL_SWING, _USUAL_STANCE = 0.45, 0.7  # s, where no foot shows any
 _STILL = 0.02  # m or rad: what moves less has no phase
@@ -22,11 +23,12 @@ _STILL = 0.02  # m or rad: what moves less has no phase
 
 def gait(motion: Motion, states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     """Return logarithms of times [s] and of dimensionless speeds, and correlations [-1, 1]."""
+    local = from_root(motion)
     return {
         **_times(states),
         **_flight(states, dynamics),
-        **_together(motion, states),
-        **_reversals(motion),
+        **_together(motion, states, local),
+        **_reversals(motion, local),
     }
 
 
@@ -47,7 +49,7 @@ def _times(states: BodyStates) -> dict[str, float]:
         "stance_time_50": log_of(stance, 0.05),
         "swings_per_second": len(swings) * states.fps / len(states.qpos),
         "way_of_a_swing": log_of(float(speed) * swing, 0.05),
-        "froude": log_of(float(speed) / np.sqrt(_GRAVITY * _LEG_LENGTH), 0.02),
+        "froude": log_of(float(speed) / np.sqrt(GRAVITY * _LEG_LENGTH), 0.02),
     }
 
 
@@ -60,7 +62,7 @@ def _flight(states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     """Return what a body that touches nothing makes of gravity: its centre falls with 1 g."""
     lowest = np.concatenate(states.soles, axis=1)[..., 2].min(axis=1)
     aloft = lowest > lowest.min() + _IN_FLIGHT
-    fall = -np.diff(dynamics.centre[:, 2], n=2) * states.fps**2 / _GRAVITY
+    fall = -np.diff(dynamics.centre[:, 2], n=2) * states.fps**2 / GRAVITY
     # the centre of frame n + 1 is dynamics' n, its second difference between n and n + 2
     inside = aloft[2:-2] & aloft[1:-3] & aloft[3:-1]
     spans = runs(inside)
@@ -75,10 +77,8 @@ def _flight(states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     }
 
 
-def _together(motion: Motion, states: BodyStates) -> dict[str, float]:
+def _together(motion: Motion, states: BodyStates, local: Array) -> dict[str, float]:
     """Return how arms, pelvis and weight go with the legs: against each other in walking."""
-    heading = rot.about_axis(2, -motion.heading)
-    local = rot.rotate(heading[:, None], motion.positions - motion.positions[:, :1])
     differs = {
         joint: local[:, CANONICAL.index(f"left_{joint}")]
         - local[:, CANONICAL.index(f"right_{joint}")]
@@ -87,7 +87,7 @@ def _together(motion: Motion, states: BodyStates) -> dict[str, float]:
     legs, thighs, arms = (differs[name][:, 0] for name in ("ankle", "knee", "wrist"))
     left, right = (sole[..., 2].min(axis=1) for sole in states.soles)
     between = np.mean([sole.mean(axis=1) for sole in states.soles], axis=0)
-    to_feet = rot.rotate(heading, motion.root - between)
+    to_feet = rot.rotate(rot.about_axis(2, -motion.heading), motion.root - between)
     return {
         "arms_with_legs": _correlation(arms, legs),
         "shoulders_with_legs": _correlation(differs["shoulder"][:, 0], legs),
@@ -114,10 +114,8 @@ def _correlation(a: Array, b: Array) -> float:
     )
 
 
-def _reversals(motion: Motion) -> dict[str, float]:
+def _reversals(motion: Motion, local: Array) -> dict[str, float]:
     """Return how often parts change their direction [1/s], from speeds through zero."""
-    heading = rot.about_axis(2, -motion.heading)
-    local = rot.rotate(heading[:, None], motion.positions - motion.positions[:, :1])
     out = {}
     for name in ("wrist", "ankle", "knee"):
         places = local[:, [CANONICAL.index(f"{side}_{name}") for side in SIDES]]

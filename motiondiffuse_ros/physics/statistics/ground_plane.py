@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.balance import GRAVITY
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
 from motiondiffuse_ros.physics.statistics.frames import in_heading, planted
 
-_GRAVITY = 9.81
 _PRIOR = 0.03  # m, spread of a sole's own length: a slope that only this shows counts half
 _LEAST_PUSH = 0.3  # body weights; with less under it the centre of pressure is not known
 
@@ -86,10 +86,10 @@ def _pressure(
     names = ("pressure_ahead", "pressure_aside", "pressure_off", "pressure_off_50")
     centre = dynamics.centre
     acceleration = np.diff(centre, n=2, axis=0) * states.fps**2
-    push = acceleration[:, 2] + _GRAVITY
+    push = acceleration[:, 2] + GRAVITY
     inner = slice(2, len(heading) - 2)
     stands = np.stack([r[inner] for r in rests], axis=1)
-    known = stands.any(axis=1) & (push > _LEAST_PUSH * _GRAVITY)
+    known = stands.any(axis=1) & (push > _LEAST_PUSH * GRAVITY)
     if known.sum() < 2:
         return dict.fromkeys(names, 0.0)
     middles = np.stack([s.mean(axis=1)[inner] for s in states.soles], axis=1)

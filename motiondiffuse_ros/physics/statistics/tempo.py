@@ -10,10 +10,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
-from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.body_states import BodyStates
-from motiondiffuse_ros.physics.statistics.frames import log_of
+from motiondiffuse_ros.physics.statistics.frames import from_root, log_of
 
 _GROUPS = {
     "hands": ("left_wrist", "right_wrist"),
@@ -33,8 +32,7 @@ _BANDS = ((1.0, 2.0), (2.0, 4.0), (4.0, 7.0), (7.0, 10.1))  # Hz
 
 def tempo(motion: Motion, states: BodyStates) -> dict[str, float]:
     """Return logarithms of speeds, accelerations, jerks and of ratios between them."""
-    heading = rot.about_axis(2, -motion.heading)
-    local = rot.rotate(heading[:, None], motion.positions - motion.positions[:, :1])
+    local = from_root(motion)
     out: dict[str, float] = {}
     for name, joints in _GROUPS.items():
         out |= _pace(name, local[:, [CANONICAL.index(j) for j in joints]], motion.fps)
