@@ -37,6 +37,7 @@ _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
 _STEPS = 4
+_KNEELING = 0.2  # m, knee over the floor
 _FULL_TURN = np.radians((300.0, 430.0))
 _LEAP, _KNEE_UP = 0.4, 0.2  # m ahead, m of a knee below its hip
 
@@ -197,7 +198,8 @@ def _postures(body: _Body) -> list[Finding]:
         found.append(Finding("bow"))
     from_standing = pitch[0] < _ERECT and body.height[0] > body.height.max() - _SUNK
     if from_standing and legs > _DOWN:
-        found.append(Finding("down low"))
+        knees = np.minimum(body.level("left_knee"), body.level("right_knee")).min()
+        found.append(Finding("on the knees" if knees < _KNEELING else "down low"))
     if from_standing and lowest < _REACHING - 0.1:
         found.append(Finding("reach down"))
     return found

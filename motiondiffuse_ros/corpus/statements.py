@@ -143,7 +143,10 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
     "down low": (
         "a person bends the knees and goes down low",
         "a person lowers the body far down over bent legs",
+        "a person crouches down low",
+        "a person squats with the knees bent",
     ),
+    "on the knees": ("a person goes down on the knees", "a person kneels down"),
     "reach down": (
         "a person reaches down to the floor with a hand",
         "a person bends down until a hand is near the floor",
@@ -175,6 +178,7 @@ _OTHERS = ("a man ", "a woman ", "the figure ")
 _VERB = re.compile(r"(^|\band )(\w+?)(?:(?<=[gd]o)es|(?<=ch)es|s)\b")
 _BODY = re.compile(r"\bthe (?=(?:left |right )?(?:hand|arm|leg|foot|feet|knee|head|palm|waist))")
 _COMPARED = 2
+_REVERSIBLE = ("walk", "slow walk")
 _NUMBERS = ("one", "two", "three", "four", "five", "six", "seven", "eight")
 
 OPPOSED = (
@@ -209,6 +213,14 @@ def state(features: Array, representation: Representation, fps: float) -> tuple[
         return ()
     found = findings(features, representation, fps)
     return tuple(Statement(f.kind, _texts(f)) for f in found if f.metres <= len(_NUMBERS))
+
+
+def state_in_reverse(statement: Statement) -> Statement | None:
+    """Return what is certain of a window played backward, from what is certain of it played ahead.
+
+    Walking backward is close to walking forward in reverse (Thorstensson 1986), and rare in data.
+    """
+    return Statement("back", _texts(Finding("back"))) if statement.kind in _REVERSIBLE else None
 
 
 def all_statements() -> tuple[str, ...]:

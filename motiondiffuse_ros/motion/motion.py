@@ -98,6 +98,10 @@ class Motion:
             self, root=self.root * _MIRROR_VECTOR, rotations=swapped * _MIRROR_QUATERNION
         )
 
+    def reversed(self) -> Motion:
+        """Play it from the last frame to the first."""
+        return replace(self, root=self.root[::-1], rotations=self.rotations[::-1])
+
     def resample(self, fps: float) -> Motion:
         """Return the motion at another rate: C2 splines for positions and rotations."""
         from motiondiffuse_ros.motion.resample import sample_at

@@ -11,7 +11,7 @@ import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import name_side
-from motiondiffuse_ros.corpus.statements import state
+from motiondiffuse_ros.corpus.statements import state, state_in_reverse
 from motiondiffuse_ros.corpus.store import Clip, Corpus
 from motiondiffuse_ros.training.texts import texts_of
 
@@ -45,13 +45,15 @@ class _Window:
     frames: int
     texts: tuple[str, ...]
     mirrored: bool = False
+    reversed: bool = False
 
 
 class WindowSampler:
     """Draws windows without end, batches of like length together.
 
     Most come with a caption of their clip, a share of `statements` with what their kinematics
-    state for certain; of those each kind of statement is as frequent as any other. Of clips that do
+    state for certain; of those each kind of statement is as frequent as any other, and walking
+    backward is half of the time walking forward played in reverse. Of clips that do
     not fit into a window a share of `crop` is shown in shorter pieces: their captions speak of the
     whole clip, so that no piece fits better than another, and people ask for any length.
     """
@@ -117,6 +119,9 @@ class WindowSampler:
         )
         for row, w in zip(features, windows, strict=True):
             x = self._corpus.of(w.clip)[w.start : w.start + w.frames]
+            if w.reversed:
+                motion = self._corpus.representation.decode(x, self._corpus.fps)
+                x = self._corpus.representation.encode(motion.reversed())
             if w.mirrored:
                 x = x[:, self._mirror_index] * self._mirror_sign
             row[: w.frames] = self._corpus.statistics.normalise(x)
@@ -143,6 +148,11 @@ def _stated_windows(
                 window = features[start : start + frames]
                 for statement in state(window, corpus.representation, corpus.fps):
                     own[statement.kind].append(_Window(clip, start, frames, statement.texts))
+                    backward = state_in_reverse(statement)
+                    if backward is not None:
+                        own[f"{backward.kind}, in reverse"].append(
+                            _Window(clip, start, frames, backward.texts, reversed=True)
+                        )
         for kind, windows in own.items():
             found[kind].append(windows)
     return [found[kind] for kind in sorted(found)]

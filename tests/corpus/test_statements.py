@@ -4,7 +4,13 @@ from synthetic import moved, standing
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.importer import load_motion
-from motiondiffuse_ros.corpus.statements import all_statements, state, statements_of
+from motiondiffuse_ros.corpus.statements import (
+    Statement,
+    all_statements,
+    state,
+    state_in_reverse,
+    statements_of,
+)
 from motiondiffuse_ros.motion.features import PoseState
 
 STATE = PoseState()
@@ -38,6 +44,17 @@ def test_real_clips_are_stated_as_what_they_are(real_paths, clip, kind, word):
     assert any(word in text for text in texts)
     other = {"left": "right", "right": "left"}.get(word)
     assert other is None or all(other not in t or word in t for t in texts)
+
+
+def test_a_walk_in_reverse_is_stated_as_walking_backward(real_paths):
+    (walk,) = (s for s in state(_of(real_paths, "02_01"), STATE, FPS) if s.kind == "walk")
+    stated = state_in_reverse(walk)
+    motion = load_motion(next(p for p in real_paths if p.stem == "02_01")).resample(FPS)
+    backward = STATE.encode(motion.reversed())
+    assert stated is not None
+    assert stated.texts == _statements(backward)["back"]
+    run = Statement("run", ("a person runs forward",))
+    assert state_in_reverse(run) is None
 
 
 def test_the_mirror_image_of_a_window_states_the_mirrored_text(real_paths):

@@ -38,6 +38,14 @@ def test_canonical_start_is_over_the_origin_facing_x_with_the_same_shape(motion)
     )
 
 
+@given(smooth_motions())
+def test_played_in_reverse_the_first_frame_is_the_last_and_twice_is_as_before(motion):
+    backward = motion.reversed()
+    np.testing.assert_array_equal(backward.positions, motion.positions[::-1])
+    np.testing.assert_array_equal(backward.reversed().rotations, motion.rotations)
+
+
+
 def test_resampling_passes_through_the_frames_and_keeps_bones():
     motion = waving(41, 20.0)
     fine = motion.resample(100.0)

@@ -8,6 +8,7 @@ from small_denoiser import SMALL
 from synthetic import standing, waving
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
+from motiondiffuse_ros.corpus.importer import load_motion
 from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.errors import CheckpointError, InputError
@@ -109,6 +110,19 @@ def test_stated_windows_come_with_what_their_kinematics_say(corpus):
     assert set(batch.texts) <= set(all_statements())
     for text, synonyms in zip(batch.texts, batch.synonyms, strict=True):
         assert text in synonyms
+
+
+def test_walks_are_also_shown_in_reverse_as_walking_backward(real_paths):
+    walk = load_motion(next(p for p in real_paths if p.stem == "02_01")).resample(20.0)
+    walks = corpus_of([("02_01", "train", "a person walks", walk)])
+    sampler = WindowSampler(walks, walks.clips, max_frames=64, mirror=0.0, statements=1.0, seed=0)
+    batch = next(sampler.batches(32))
+    backward = [i for i, text in enumerate(batch.texts) if "back" in text]
+    assert 0 < len(backward) < 32
+    for i, row in enumerate(batch.features.numpy()):
+        features = walks.statistics.denormalise(row[: batch.lengths[i]])
+        end = walks.representation.decode(features, 20.0).root[-1, 0]
+        assert end < -0.5 if i in backward else end > 0.5, batch.texts[i]
 
 
 def test_bad_settings_are_refused():
