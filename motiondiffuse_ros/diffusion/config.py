@@ -31,6 +31,8 @@ class DenoiserConfig:
         head_width: Width of the convolutional head that follows un-patching (0: a plain linear
             layer, the paper's). Without it patches of several frames leave seams.
         attention: "efficient" (eq. 8) or "full".
+        end_positions: Whether motion tokens know how far the end is, too (not the paper's). A turn
+            by ninety degrees is slow where there is much time.
         time_width: Width of the embedding that steers the stylization blocks.
         text_encoder: Name of the frozen encoder.
         text_dim: Width of its token states.
@@ -57,6 +59,7 @@ class DenoiserConfig:
     patch_size: int = 4
     head_width: int = 128
     attention: str = "efficient"
+    end_positions: bool = True
     time_width: int = 512
     text_encoder: str = "minilm"
     text_dim: int = 384
@@ -83,6 +86,7 @@ class DenoiserConfig:
             patch_size=1,
             head_width=0,
             attention="efficient",
+            end_positions=False,
             time_width=2048,
             text_encoder="clip",
             text_dim=512,
@@ -135,6 +139,6 @@ class DenoiserConfig:
         known = {f.name for f in fields(cls)}
         if not isinstance(data, dict) or not set(data) <= known:
             raise CheckpointError(f"denoiser configuration with unknown fields: {data!r:.200}")
-        config = cls(**data)
+        config = cls(**{"end_positions": False, **data})  # weights from before there were any
         config.validate()
         return config

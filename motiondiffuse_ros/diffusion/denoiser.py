@@ -155,6 +155,10 @@ class Denoiser(nn.Module):
         self.positions = nn.Parameter(
             0.02 * torch.randn(config.max_frames // config.patch_size, width)
         )
+        # zeros: weights without them can be trained on
+        self.end_positions = (
+            nn.Parameter(torch.zeros_like(self.positions)) if config.end_positions else None
+        )
         self.layers = nn.ModuleList(DecoderLayer(config) for _ in range(config.layers))
         self.norm = nn.LayerNorm(width)
         self.head = ConvolutionalHead(config) if config.head_width else LinearHead(config)
@@ -201,13 +205,29 @@ class Denoiser(nn.Module):
         x = F.pad(x, (0, 0, 0, -frames % patch))
         frame_mask = F.pad(frame_mask, (0, -frames % patch))
         tokens = self.patch_in(x.unflatten(1, (-1, patch)).flatten(2))
-        tokens = tokens + self.positions[: tokens.shape[1]]
+        tokens = tokens + positions_of(self, lengths, tokens.shape[1])
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
         embedding = self.time_in(step_embedding(steps, self.config.width)) + conditioning.pooled
         for layer, context in zip(self._decoder(), conditioning.contexts, strict=True):
             tokens = layer(tokens, token_mask, context, embedding)
         y = self.head(self.norm(tokens), x, frame_mask, embedding)
         return y[:, :frames].float()
+
+
+def positions_of(denoiser: Denoiser, lengths: Tensor, count: int) -> Tensor:
+    """Return what is added to `count` tokens of each row, [count, width] or [B, count, width].
+
+    Args:
+        denoiser: Whose positions they are.
+        lengths: Frames that count in each row [B].
+        count: Tokens of a row, with padding.
+    """
+    from_start = denoiser.positions[:count]
+    if denoiser.end_positions is None:
+        return from_start
+    tokens = -(-lengths // denoiser.config.patch_size)
+    left = tokens[:, None] - 1 - torch.arange(count, device=lengths.device)
+    return from_start + denoiser.end_positions[left.clamp(min=0)]
 
 
 def step_embedding(steps: Tensor, width: int) -> Tensor:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import cast
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, proxy
 
 import torch
 from torch import Tensor, nn
@@ -17,6 +17,7 @@ from motiondiffuse_ros.diffusion.denoiser import (
     DecoderLayer,
     Denoiser,
     StylizationBlock,
+    positions_of,
     step_embedding,
 )
 from motiondiffuse_ros.diffusion.product import GELU, Convolution, Product
@@ -78,7 +79,7 @@ class PreparedDenoiser:
             (torch.cat([w for w, _ in styles]), torch.cat([b for _, b in styles]))
         )
         self._patch_in = self._product(_of(denoiser.patch_in))
-        self._positions = denoiser.positions.detach()
+        self._denoiser = proxy(denoiser)
         self._time_in = denoiser.time_in
 
     def _prepared(self, layer: DecoderLayer) -> _Layer:
@@ -143,7 +144,7 @@ class PreparedDenoiser:
         if token_mask.all():
             token_mask = None
         tokens = self._patch_in(x.unflatten(1, (-1, patch)).flatten(2))
-        tokens = tokens + self._positions[: tokens.shape[1]]
+        tokens = tokens + positions_of(self._denoiser, lengths, tokens.shape[1])
         pieces = iter(styles[:, None].split(self._style_widths, dim=-1))
         for layer, text in zip(self._layers, contexts, strict=True):
             self._pass(layer, tokens, token_mask, text, pieces)

@@ -8,6 +8,8 @@ from torch import Tensor
 NOISIEST = 0.15
 """Part of the steps that `draw_steps` can give a larger share."""
 
+_SPACING = 2.5  # these are drawn as densely as the sampler visits them
+
 
 def draw_steps(
     train_steps: int, count: int, noisiest: float, generator: torch.Generator | None = None
@@ -24,11 +26,11 @@ def draw_steps(
         noisiest: Share that is drawn from the noisiest steps alone; the others from all.
         generator: Of the draws; the global one if None.
     """
-    first = round((1.0 - NOISIEST) * train_steps)
     every = torch.randint(train_steps, (count,), generator=generator)
     if noisiest == 0.0:
         return every
-    noisy = torch.randint(first, train_steps, (count,), generator=generator)
+    depth = torch.rand(count, generator=generator) ** _SPACING * round(NOISIEST * train_steps)
+    noisy = train_steps - 1 - depth.long()
     return torch.where(torch.rand(count, generator=generator) < noisiest, noisy, every)
 
 

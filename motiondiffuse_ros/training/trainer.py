@@ -6,7 +6,7 @@ import json
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import torch
@@ -292,7 +292,9 @@ class Trainer:
 
     def _start_from(self, start: Checkpoint) -> None:
         theirs, ours = start.denoiser.config, self.denoiser.config
-        if theirs != ours:
+        if replace(theirs, end_positions=ours.end_positions) != ours or (
+            theirs.end_positions and not ours.end_positions
+        ):
             differing = [k for k, v in theirs.to_dict().items() if ours.to_dict()[k] != v]
             raise CheckpointError(
                 f"the weights to start from differ from this denoiser in {', '.join(differing)}"
@@ -301,7 +303,10 @@ class Trainer:
             raise CheckpointError(
                 "the weights to start from were trained with another text encoder"
             )
-        self.denoiser.load_state_dict(start.denoiser.state_dict())
+        # end positions that they lack stay zero: they say nothing yet
+        self.denoiser.load_state_dict(
+            start.denoiser.state_dict(), strict=theirs.end_positions == ours.end_positions
+        )
 
     def _parameter_groups(self) -> list[dict]:
         matrices = [p for p in self.denoiser.parameters() if p.ndim > 1]

@@ -45,7 +45,6 @@ def test_played_in_reverse_the_first_frame_is_the_last_and_twice_is_as_before(mo
     np.testing.assert_array_equal(backward.reversed().rotations, motion.rotations)
 
 
-
 def test_resampling_passes_through_the_frames_and_keeps_bones():
     motion = waving(41, 20.0)
     fine = motion.resample(100.0)

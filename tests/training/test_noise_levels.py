@@ -1,6 +1,8 @@
 import pytest
 import torch
 
+from motiondiffuse_ros.diffusion.process import denoising_steps
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
 
 
@@ -12,6 +14,15 @@ def test_the_noisiest_steps_get_their_share(share):
     # those drawn from all steps fall among the noisiest, too
     expected = share + (1.0 - share) * 0.15
     assert (steps >= 850).float().mean().item() == pytest.approx(expected, abs=0.015)
+
+
+def test_the_noisiest_of_the_noisiest_are_drawn_as_often_as_they_are_sampled():
+    steps = draw_steps(1000, 20_000, 1.0, torch.Generator().manual_seed(0))
+    visited = torch.tensor(denoising_steps(24, SamplerConfig.spacing, 1000))
+    visited = visited[visited >= 850]
+    for level in (970, 920):
+        drawn = (steps >= level).float().mean()
+        assert drawn.item() == pytest.approx((visited >= level).float().mean().item(), abs=0.08)
 
 
 def test_the_same_generator_draws_the_same_steps():
