@@ -5,8 +5,9 @@
 
 Answers a caption of every clip of the test split that lasts two seconds or more with several
 candidates, feet held in the loop of denoising (`planted_below`) or not, and prints phys-err and
-its parts, skating, jerk and R-precision by the shipped evaluator: of the first candidate as it is
-sampled, put on the floor, repaired, and of the candidate that the planner would choose, repaired.
+its parts, skating, jerk, R-precision by the shipped evaluator, the mean score and the share of
+implausible motions: of the first candidate as it is sampled, put on the floor, repaired, and of
+the candidate that the planner would choose, repaired.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.physics.foot_skating import foot_skating
 from motiondiffuse_ros.physics.ground_contact import ground_errors
 from motiondiffuse_ros.physics.repair import Repair, put_on_floor, repair
+from motiondiffuse_ros.physics.report import IMPLAUSIBLE, assess
 from motiondiffuse_ros.physics.smoothness import joint_jerk
 from motiondiffuse_ros.planner import shipped_weights
 from motiondiffuse_ros.selection import choose, text_matches
@@ -42,7 +44,7 @@ _QUICK_CLIPS, _QUICK_STEPS = 32, 15
 _POOL_DRAWS = 20
 _COLUMNS = (
     *("phys_err_mm", "penetrate_mm", "float_mm", "skate_mm", "skating_ratio", "median_jerk"),
-    *("r_precision_top1", "r_precision_top3"),
+    *("r_precision_top1", "r_precision_top3", "score", "implausible"),
 )
 
 
@@ -156,12 +158,14 @@ def _figures(
     representation: Representation,
     seed: int,
 ) -> dict[str, float]:
-    rows = []
+    rows, verdicts = [], []
     for motion in motions:
         ground = ground_errors(motion)
         parts = (ground.phys_err, ground.penetrate, ground.float_, ground.skate)
         jerk = float(np.median(joint_jerk(motion).max(axis=1)))
         rows.append([*(float(p.mean()) for p in parts), foot_skating(motion).ratio, jerk])
+        report = assess(motion, track=False)
+        verdicts.append([report.score, float(report.verdict == IMPLAUSIBLE)])
     texts = [item.text for item in items]
     text = evaluator.embed_texts(texts)
     motion = evaluator.embed_motions([representation.encode(m) for m in motions])
@@ -172,7 +176,7 @@ def _figures(
         if drawn
         else [np.nan] * 3
     )
-    values = [*np.mean(rows, axis=0), tops[0], tops[2]]
+    values = [*np.mean(rows, axis=0), tops[0], tops[2], *np.mean(verdicts, axis=0)]
     return dict(zip(_COLUMNS, map(float, values), strict=True))
 
 

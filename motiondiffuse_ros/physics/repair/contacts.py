@@ -25,7 +25,7 @@ class ContactRule:
 
     support_height: float = 0.06
     height: float = 0.03
-    speed: float = 0.9
+    speed: float = 0.75
     shortest: int = 2
 
 

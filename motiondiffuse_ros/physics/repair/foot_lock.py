@@ -2,7 +2,7 @@
 
 As in Kovar et al. 2002 ("Footskate cleanup for motion capture editing"): find when a foot stands,
 hold what touches the floor in place, spread the correction smoothly over the steps in between, and
-solve the legs analytically.
+solve the legs analytically. Feet that move are lifted to where they do not graze the floor.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+from scipy.ndimage import gaussian_filter1d
 
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion import rotations as rot
@@ -21,12 +21,16 @@ from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.geometry import sole_probes
 from motiondiffuse_ros.physics.repair.contacts import ContactRule, foot_contacts
+from motiondiffuse_ros.physics.repair.swing import smooth_cover, swing_lift
 from motiondiffuse_ros.physics.repair.two_bones import reach_ankle
 
 _RULE = ContactRule()
 _FLAT = np.radians(20.0)  # a standing sole less steep than this lies on the floor
 _TOUCHING = 0.008  # corners this near to the lowest one touch the floor with it [m]
-_EASE = 0.1  # s, over which a sole comes to lie and leaves again, and the root follows
+_EASE = 0.2  # s, over which a sole comes to lie and leaves again
+_FOLLOW = 0.3  # s, over which the root follows its feet
+_COME_DOWN = 0.1  # s, over which the root comes down for a leg that is too short
+_RUN_OUT = 0.2  # s, over which the speed of a correction dies away where a contact ends
 _STRETCH = 0.9995  # of its length, up to which a leg may be stretched
 _DEEPEST = 0.1  # m, by which the root comes down at most
 _UP, _AHEAD, _LEFTWARDS = np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), np.array([0.0, 1, 0])
@@ -40,7 +44,8 @@ class Foot:
         sole: World rotation of the foot [T, 4].
         toes: World rotation of the toes [T, 4].
         corners: Corners of the sole relative to the ankle [T, C, 3], m.
-        ankle: Place of the ankle [T, 3], m.
+        ankle: Place of the ankle [T, 3], m, but for the lift.
+        lift: How far the ankle is above that for the sole to clear the floor [T], m.
         contact: Whether it stands [T].
     """
 
@@ -48,6 +53,7 @@ class Foot:
     toes: Array = field(repr=False)
     corners: Array = field(repr=False)
     ankle: Array = field(repr=False)
+    lift: Array = field(repr=False)
     contact: NDArray[np.bool_] = field(repr=False)
 
 
@@ -81,11 +87,12 @@ def _placed_foot(motion: Motion, side: str, contact: NDArray[np.bool_]) -> Foot:
     )
     ankle = motion.positions[:, heel].copy()
     lowest = corners[..., 2].min(axis=1)
-    ankle[:, :2] += _bridged(_held(ankle, corners, contact), contact)
-    ankle[:, 2] += _bridged(-(ankle[:, 2] + lowest)[:, None], contact)[:, 0]
+    ankle[:, :2] += _bridged(_held(ankle, corners, contact), contact, motion.fps)
+    ankle[:, 2] += _bridged(-(ankle[:, 2] + lowest)[:, None], contact, motion.fps)[:, 0]
     # whatever the path between contacts is, it does not lead through the floor
     ankle[:, 2] = np.maximum(ankle[:, 2], -lowest)
-    return Foot(sole, toes, corners, ankle, contact)
+    lift = swing_lift(ankle[:, None] + corners, contact, motion.fps)
+    return Foot(sole, toes, corners, ankle, lift, contact)
 
 
 def _laid_down(
@@ -129,7 +136,7 @@ def _held(ankle: Array, corners: Array, contact: NDArray[np.bool_]) -> Array:
     return out
 
 
-def _bridged(values: Array, contact: NDArray[np.bool_]) -> Array:
+def _bridged(values: Array, contact: NDArray[np.bool_], fps: float) -> Array:
     """Keep values [T, k] within contacts and lead smoothly from one to the next."""
     out = values.copy()
     spans = runs(contact)
@@ -142,7 +149,21 @@ def _bridged(values: Array, contact: NDArray[np.bool_]) -> Array:
         # the quintic that starts and ends without velocity and acceleration
         eased = (share**3 * (10.0 - 15.0 * share + 6.0 * share**2))[:, None]
         out[start:stop] = values[start - 1] * (1.0 - eased) + values[stop] * eased
+    longest = round(_RUN_OUT * fps)
+    edges = [(0, 0), *spans, (len(out), len(out))]
+    for (_, before), (start, stop), (after, _) in zip(edges, spans, edges[2:], strict=False):
+        if stop - start > 1:
+            later = _run_out(values[stop - 1] - values[stop - 2], min(after - stop, longest))
+            out[stop : stop + len(later)] += later
+            earlier = _run_out(values[start] - values[start + 1], min(start - before, longest))
+            out[start - len(earlier) : start] += earlier[::-1]
     return out
+
+
+def _run_out(step: Array, frames: int) -> Array:
+    """Return what a correction that changes by a step [k] adds after it ends [frames, k]."""
+    frame = np.arange(1.0, frames + 1.0)
+    return (frame * (1.0 - frame / (frames + 1.0)) ** 3)[:, None] * step
 
 
 def _root_shift(motion: Motion, feet: list[Foot]) -> Array:
@@ -153,7 +174,7 @@ def _root_shift(motion: Motion, feet: list[Foot]) -> Array:
     """
     names = [CANONICAL.index(f"{side}_ankle") for side in SIDES]
     moved = np.stack([f.ankle for f in feet], 1) - motion.positions[:, names]
-    shift = gaussian_filter1d(moved.mean(axis=1), _EASE * motion.fps, axis=0, mode="nearest")
+    shift = gaussian_filter1d(moved.mean(axis=1), _FOLLOW * motion.fps, axis=0, mode="nearest")
     lower = np.zeros(motion.frames)
     for side, foot in zip(SIDES, feet, strict=True):
         hip = motion.joint(f"{side}_hip") + shift
@@ -162,15 +183,9 @@ def _root_shift(motion: Motion, feet: list[Foot]) -> Array:
         apart = np.linalg.norm((foot.ankle - hip)[:, :2], axis=-1)
         highest = foot.ankle[:, 2] + np.sqrt(np.maximum(whole**2 - apart**2, 0.0))
         lower = np.maximum(lower, np.where(foot.contact, hip[:, 2] - highest, 0.0))
-    shift[:, 2] -= _smooth_cover(np.minimum(lower, _DEEPEST), motion.fps)
+    width = max(round(_COME_DOWN * motion.fps), 1)
+    shift[:, 2] -= smooth_cover(np.minimum(lower, _DEEPEST), width)
     return shift
-
-
-def _smooth_cover(values: Array, fps: float) -> Array:
-    """Return a smooth curve that is nowhere below the values [T]."""
-    width = max(round(_EASE * fps), 1)
-    covered = maximum_filter1d(values, 2 * width + 1, mode="nearest")
-    return uniform_filter1d(covered, 2 * width + 1, mode="nearest")
 
 
 def _pose_leg(motion: Motion, rotations: Array, side: str, foot: Foot) -> None:
@@ -183,7 +198,7 @@ def _pose_leg(motion: Motion, rotations: Array, side: str, foot: Foot) -> None:
         places[:, hip],
         places[:, knee],
         places[:, heel],
-        foot.ankle,
+        foot.ankle + foot.lift[:, None] * _UP,
         thigh,
         shank,
         rot.rotate(thigh, _LEFTWARDS),

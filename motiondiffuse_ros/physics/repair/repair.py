@@ -1,4 +1,4 @@
-"""The whole repair: ground height, a root without jerks, feet that stand; never for the worse."""
+"""The whole repair: ground height, a root without jerks, feet that stand; never against physics."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import numpy as np
 from scipy.signal import savgol_filter
 
 from motiondiffuse_ros.motion import Motion
+from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.measures import MIN_FRAMES, RATE
 from motiondiffuse_ros.physics.repair.foot_lock import lock_feet
-from motiondiffuse_ros.physics.repair.ground import put_on_floor
-from motiondiffuse_ros.physics.report import Report, assess
+from motiondiffuse_ros.physics.repair.ground import follow_floor, put_on_floor
+from motiondiffuse_ros.physics.report import IMPLAUSIBLE, MARGINAL, PLAUSIBLE, Report, assess
 
 _WINDOW, _DEGREE = 7, 3
+_VERDICTS = (IMPLAUSIBLE, MARGINAL, PLAUSIBLE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +24,7 @@ class Repair:
     """A motion and what physics says of it before and after.
 
     Attributes:
-        motion: The repaired motion, or the given one where the repair would have made it worse.
+        motion: The repaired motion, or the given one where any repair would have made it worse.
         before: Report on the motion as it was given.
         after: Report on `motion`.
     """
@@ -42,6 +44,8 @@ class Repair:
 def repair(motion: Motion, judge: Callable[[Motion], Report] | None = None) -> Repair:
     """Repair a motion, unless that makes it less plausible.
 
+    Where the whole repair does, it is put on the floor and no more; where that does, it stays.
+
     Args:
         motion: At any rate; one that is not finite or too short is returned as it is.
         judge: Makes the reports; `assess` without simulation if None.
@@ -50,11 +54,25 @@ def repair(motion: Motion, judge: Callable[[Motion], Report] | None = None) -> R
     before = judge(motion)
     if motion.frames < MIN_FRAMES or before.score == 0.0:
         return Repair(motion, before, before)
-    repaired = repaired_motion(motion)
-    after = judge(repaired)
-    if after.score < before.score:
-        return Repair(motion, before, before)
-    return Repair(repaired, before, after)
+    on_floor = smooth_root(follow_floor(put_on_floor(motion)))
+    for change in (lock_feet, _unchanged):
+        repaired = _started_at(change(on_floor), motion.root[0])
+        after = judge(repaired)
+        if not worse(after, before):
+            return Repair(repaired, before, after)
+    return Repair(motion, before, before)
+
+
+def worse(after: Report, before: Report) -> bool:
+    """Say whether a repair has a worse verdict or sins more against physics.
+
+    The fitted score alone does not count: it knows how recorded feet move, and those are never as
+    still on the floor as held ones.
+    """
+    if _VERDICTS.index(after.verdict) < _VERDICTS.index(before.verdict):
+        return True
+    now, then = (r.metrics.get("criteria_score") or 0.0 for r in (after, before))
+    return now < then and after.score < before.score
 
 
 def repaired_motion(motion: Motion) -> Motion:
@@ -62,9 +80,17 @@ def repaired_motion(motion: Motion) -> Motion:
 
     It still starts over the same point of the floor.
     """
-    repaired = lock_feet(smooth_root(put_on_floor(motion)))
-    away = (repaired.root[0] - motion.root[0]) * np.array([1.0, 1.0, 0.0])
-    return replace(repaired, root=repaired.root - away)
+    on_floor = smooth_root(follow_floor(put_on_floor(motion)))
+    return _started_at(lock_feet(on_floor), motion.root[0])
+
+
+def _started_at(motion: Motion, place: Array) -> Motion:
+    away = (motion.root[0] - place) * np.array([1.0, 1.0, 0.0])
+    return replace(motion, root=motion.root - away)
+
+
+def _unchanged(motion: Motion) -> Motion:
+    return motion
 
 
 def smooth_root(motion: Motion) -> Motion:
