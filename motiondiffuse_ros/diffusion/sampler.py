@@ -43,8 +43,8 @@ class SamplerConfig:
         time_correction: λ₂ of eq. 11: the same of neighbours in time, where they overlap.
         apart_above: Noise level, as part of the training steps, above which texts on different
             parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
-        planted_below: Noise level, as part of the training steps, below which feet in contact hold
-            the root (`motion.planted_feet`); 0 is never.
+        planted_below: Noise level, as part of the training steps, below which feet in contact are
+            held in their places (`motion.planted_feet`); 0 is never.
         precision: Arithmetic of the denoiser, one of `PRECISIONS`.
     """
 
@@ -126,7 +126,7 @@ def sample(
     """
     config.validate()
     generator = torch.Generator().manual_seed(seed)
-    x = torch.randn((candidates, frames, denoiser.config.feature_dim), generator=generator)
+    x = _noise((candidates, frames, denoiser.config.feature_dim), generator)
     predict = WindowedPrediction(
         _guided(denoiser, config, conditioning, unconditional),
         windows,
@@ -171,8 +171,7 @@ def sample_batch(
     """
     config.validate()
     generator = torch.Generator().manual_seed(seed)
-    shape = (len(lengths), int(lengths.max()), denoiser.config.feature_dim)
-    x = torch.randn(shape, generator=generator)
+    x = _noise((len(lengths), int(lengths.max()), denoiser.config.feature_dim), generator)
     lengths = lengths.to(denoiser.device)
     guided = _guided(denoiser, config, conditioning, unconditional)
     rows = torch.arange(len(lengths))
@@ -181,6 +180,15 @@ def sample_batch(
         return guided(x, step, lengths, rows)
 
     return _denoise(predict, x, denoiser, config, generator, (), planted)
+
+
+def _noise(shape: tuple[int, int, int], generator: torch.Generator) -> Tensor:
+    """Return what sampling starts from: noise [B, T, D] whose mean over time is zero.
+
+    The denoiser reads a mean as the hint of a heading or a speed, though the text says another.
+    """
+    noise = torch.randn(shape, generator=generator)
+    return noise - noise.mean(dim=1, keepdim=True)
 
 
 def _denoise(

@@ -1,14 +1,18 @@
-"""Move the root of a pose state so that feet that stand stay put, in torch, for use in denoising.
+"""Make the feet of a pose state that stand stay put, in torch, for use in denoising.
 
 PhysDiff (Yuan et al. 2023) projects onto what a simulator can follow at the last denoising steps.
-This is the part of it that costs nothing: the pose is left as it is, and the root goes the way that
-the standing feet imply, as high over the floor as they are below it.
+This is the part of it that costs next to nothing: legs reach to where their standing foot rests,
+and the root is as high over the floor as the soles are below it. The root's way over the floor is
+left alone: steps are drawn shorter than the way, and a root that feet may hold walks too slowly for
+what the text says.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
+import roma
 import torch
 from torch import Tensor
 from torch.nn import functional as F
@@ -19,79 +23,139 @@ from motiondiffuse_ros.motion.skeleton import (
     ANKLE_HEIGHT,
     CANONICAL,
     HEEL_BEHIND_ANKLE,
+    SIDES,
     TOE_HEIGHT,
 )
 
 _CERTAIN = 0.3
 """Contact labels up to this are taken for none."""
 
-_SLIDE_FRAMES, _HEIGHT_FRAMES = 1.0, 3.0
+_HEIGHT_FRAMES = 3.0
 """Standard deviation of the smoothing over time: poses jitter while they are denoised, and the root
 must not; nor may it jump where a contact begins."""
 
-_DRIFT_FRAMES = 10.0
-"""What is slower than this goes on sideways: feet drag in sampled sidesteps, and a body that they
-hold stays where it is."""
+_SUNK = 0.02
+"""A sole this far below the floor [m] counts like one in certain contact."""
+
+_LIFT_FRAMES, _LIFT_WINDOW = 2.0, 5
+"""Smoothing of what lifts the soles that are then still below it, and over how many frames the
+deepest of them counts."""
+
+_REACH = 0.2
+"""Legs reach less far than this from where they were drawn, m."""
 
 _FLAT = CANONICAL.offsets[CANONICAL.index("left_foot")]
 _FLAT_PITCH = math.atan2(_FLAT[2], math.hypot(_FLAT[0], _FLAT[1]))
 
 
+_LEGS = tuple(
+    tuple(CANONICAL.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle"))
+    for side in SIDES
+)
+
+
+@dataclass(frozen=True)
+class PlantingWeights:
+    """What the legs' reach is weighed by; squares are summed over frames.
+
+    Attributes:
+        standing: That a foot in certain contact moves over the floor, against the others.
+        own_velocity: That the reach changes, in contact or not.
+        own_place: That there is any reach: a stance is shared between its start and its end.
+        smooth: That the change of the reach changes, at the beginning and end of a contact.
+        height: That the lowest sole is on the floor, against the root's own height.
+    """
+
+    standing: float = 10.0
+    own_velocity: float = 0.05
+    own_place: float = 0.02
+    smooth: float = 0.2
+    height: float = 20.0
+
+
 class PlantedFeet:
-    """Draws the root to where the feet in contact rest on the floor."""
+    """Moves the legs to where feet in contact rest, and the root to where soles touch the floor."""
 
-    def __init__(self, fps: float, pull: float = 10.0, height_pull: float = 20.0) -> None:
-        """Take the rate.
-
-        Args:
-            fps: Frame rate, Hz.
-            pull: Weight of one foot joint in contact against the root's own velocity.
-            height_pull: Weight of the sole that is lowest against the root's own height.
-        """
+    def __init__(self, fps: float, weights: PlantingWeights | None = None) -> None:
+        """Take the rate [Hz], and weights other than the default ones."""
         groups = PoseState().groups()
-        self._planar, self._contacts = groups["root_velocity"], groups["contacts"]
+        self._contacts, self._rotations = groups["contacts"], groups["rotations"]
         self._height, self._positions = groups["root_height"], groups["positions"]
         self._velocities = groups["velocities"]
         self._kinematics = PoseStateKinematics()
         self._feet = list(CONTACT_POSITIONS)
-        self._fps, self._pull, self._height_pull = fps, pull, height_pull
+        self._fps, self._weights = fps, weights or PlantingWeights()
 
     def __call__(self, features: Tensor) -> Tensor:
-        """Return pose states [C, T, 269], denormalised, with the root's path changed."""
-        if features.shape[1] < 2:
+        """Return pose states [C, T, 269], denormalised, with legs and the root's height changed."""
+        if features.shape[1] < 3:
             return features
         features = features.clone()
         labels = features[..., self._contacts]
         certain = ((labels - _CERTAIN) / (1.0 - _CERTAIN)).clamp(0.0, 1.0)
         shape = features.shape[:2]
         places = self._kinematics.positions(features.flatten(0, 1)).unflatten(0, shape)
-        self._hold(features, places, certain)
+        speeds = self._speeds(features, places)
+        reach = self._reach(speeds[:, :, self._feet], certain)
+        places = self._bend(features, places, speeds, reach)
         self._level(features, places, certain)
         return features
 
-    def _hold(self, features: Tensor, places: Tensor, certain: Tensor) -> None:
-        """Change the root's velocity over the floor."""
-        slide = self._foot_velocities(features, places)[..., [0, 2]]
-        weight = self._pull * certain[:, :-1, :, None]
-        change = -(weight * slide).sum(2) / (1.0 + weight.sum(2))
-        change = _smooth(F.pad(change, (0, 0, 0, 1)), _SLIDE_FRAMES)
-        change[..., 0] -= _smooth(change[..., :1], _DRIFT_FRAMES)[..., 0]
-        features[..., self._planar] += change
-        features[..., self._velocities.start : self._velocities.stop : 3] += change[..., :1]
-        features[..., self._velocities.start + 2 : self._velocities.stop : 3] += change[..., 1:]
+    def _reach(self, speeds: Tensor, certain: Tensor) -> Tensor:
+        """Return how far each foot has to be moved [C, feet, T, 2], m, x and z.
+
+        The sum of squares in `PlantingWeights` is least; a foot's contact is that of its ankle or
+        its toe, whichever is more certain.
+        """
+        weights, frames = self._weights, certain.shape[1]
+        slides = speeds[..., [0, 2]].unflatten(2, (2, 2))
+        contact = certain[:, :-1].unflatten(2, (2, 2))
+        slide = (contact[..., None] * slides).sum(3) / contact.sum(3)[..., None].clamp(min=1e-6)
+        standing = weights.standing * contact.amax(3).transpose(1, 2)
+        change = torch.eye(frames, device=certain.device).diff(dim=0)
+        bend = change.diff(dim=0)
+        matrix = change.T @ ((standing + weights.own_velocity)[..., None] * change)
+        matrix += weights.own_place * torch.eye(frames, device=certain.device)
+        matrix += weights.smooth * bend.T @ bend
+        against = standing[..., None] * slide.transpose(1, 2) / self._fps
+        reach = torch.linalg.solve(matrix, -(change.T @ against))
+        return _REACH * torch.tanh(reach / _REACH)
+
+    def _bend(self, features: Tensor, places: Tensor, speeds: Tensor, reach: Tensor) -> Tensor:
+        """Turn each leg at its hip by its reach, and the foot back; returns the new places."""
+        columns = features[..., self._rotations].unflatten(-1, (-1, 2, 3)).transpose(-1, -2)
+        local = roma.special_gramschmidt(columns)
+        root = local[:, :, 0]
+        for leg, (hip, knee, ankle) in enumerate(_LEGS):
+            # places leave out the root; a leg that is folded up cannot swing
+            length = (places[:, :, hip - 1, 1] - places[:, :, ankle - 1, 1]).clamp(min=0.3)
+            x, z = (reach[:, leg] / length[..., None]).unbind(-1)
+            turn = roma.rotvec_to_rotmat(torch.stack([-z, torch.zeros_like(x), x], dim=-1))
+            shank = root @ local[:, :, hip] @ local[:, :, knee]
+            local[:, :, hip] = root.mT @ turn @ root @ local[:, :, hip]
+            local[:, :, ankle] = shank.mT @ turn.mT @ shank @ local[:, :, ankle]
+        features[..., self._rotations] = local[..., :2].mT.flatten(2)
+        shape = features.shape[:2]
+        moved = self._kinematics.positions(features.flatten(0, 1)).unflatten(0, shape)
+        features[..., self._positions] += (moved - places).flatten(2)
+        faster = _and_last(self._speeds(features, moved) - speeds).flatten(2)
+        features[..., self._velocities.start + 3 : self._velocities.stop] += faster
+        return moved
 
     def _level(self, features: Tensor, places: Tensor, certain: Tensor) -> None:
         """Change the root's height, in flight by what the nearest contacts ask for."""
-        certain = certain.amax(2, keepdim=True)
         above = self._sole_heights(places).amin(2, keepdim=True)
+        certain = torch.maximum(certain.amax(2, keepdim=True), (-above / _SUNK).clamp(0.0, 1.0))
         missing = _smooth(certain * above, _HEIGHT_FRAMES)
         support = _smooth(certain, _HEIGHT_FRAMES)
-        change = -missing / (support + 1.0 / self._height_pull)
+        change = -missing / (support + 1.0 / self._weights.height)
+        below = (-above - change).clamp(min=0.0).transpose(1, 2)
+        deepest = F.max_pool1d(below, _LIFT_WINDOW, 1, _LIFT_WINDOW // 2).transpose(1, 2)
+        change = change + _smooth(deepest, _LIFT_FRAMES)
         features[..., self._height] += change
         features[..., self._positions.start + 1 : self._positions.stop : 3] += change
-        speed = change.diff(dim=1) * self._fps
-        speed = torch.cat([speed, speed[:, -1:]], dim=1)
-        features[..., self._velocities.start + 1 : self._velocities.stop : 3] += speed
+        rise = _and_last(change.diff(dim=1) * self._fps)
+        features[..., self._velocities.start + 1 : self._velocities.stop : 3] += rise
 
     def _sole_heights(self, places: Tensor) -> Tensor:
         """Return the height [C, T, 2], m, of the lower of heel and ball of each foot."""
@@ -102,15 +166,20 @@ class PlantedFeet:
         heel = ankle[..., 1] - ANKLE_HEIGHT * pitch.cos() - HEEL_BEHIND_ANKLE * pitch.sin()
         return torch.minimum(heel, toe[..., 1] - TOE_HEIGHT * pitch.cos())
 
-    def _foot_velocities(self, features: Tensor, places: Tensor) -> Tensor:
-        """Return [C, T - 1, feet, 3], m/s, over the floor in the heading frame."""
+    def _speeds(self, features: Tensor, places: Tensor) -> Tensor:
+        """Return joint velocities [C, T - 1, 21, 3], m/s, over the floor in the heading frame."""
         velocities = self._kinematics.velocities(
             features[:, :-1].flatten(0, 1),
             places[:, :-1].flatten(0, 1),
             places[:, 1:].flatten(0, 1),
             self._fps,
         )
-        return velocities.unflatten(0, (len(features), -1))[:, :, self._feet]
+        return velocities.unflatten(0, (len(features), -1))
+
+
+def _and_last(values: Tensor) -> Tensor:
+    """Return values between frames [C, T - 1, ...] for all frames, the last as the one before."""
+    return torch.cat([values, values[:, -1:]], dim=1)
 
 
 def _smooth(values: Tensor, frames: float) -> Tensor:
