@@ -205,7 +205,9 @@ class Denoiser(nn.Module):
         x = F.pad(x, (0, 0, 0, -frames % patch))
         frame_mask = F.pad(frame_mask, (0, -frames % patch))
         tokens = self.patch_in(x.unflatten(1, (-1, patch)).flatten(2))
-        tokens = tokens + positions_of(self, lengths, tokens.shape[1])
+        tokens = tokens + positions_of(
+            self.positions, self.end_positions, -(-lengths // patch), tokens.shape[1]
+        )
         token_mask = frame_mask.unflatten(1, (-1, patch)).any(-1)
         embedding = self.time_in(step_embedding(steps, self.config.width)) + conditioning.pooled
         for layer, context in zip(self._decoder(), conditioning.contexts, strict=True):
@@ -214,20 +216,19 @@ class Denoiser(nn.Module):
         return y[:, :frames].float()
 
 
-def positions_of(denoiser: Denoiser, lengths: Tensor, count: int) -> Tensor:
-    """Return what is added to `count` tokens of each row, [count, width] or [B, count, width].
+def positions_of(start: Tensor, end: Tensor | None, tokens: Tensor, count: int) -> Tensor:
+    """Return what is added to the tokens of each row, [count, width] or [B, count, width].
 
     Args:
-        denoiser: Whose positions they are.
-        lengths: Frames that count in each row [B].
-        count: Tokens of a row, with padding.
+        start: For each token from the first on [N, width].
+        end: For each from the last one back [N, width], if there are such.
+        tokens: How many count in each row [B].
+        count: How many there are, with padding.
     """
-    from_start = denoiser.positions[:count]
-    if denoiser.end_positions is None:
-        return from_start
-    tokens = -(-lengths // denoiser.config.patch_size)
-    left = tokens[:, None] - 1 - torch.arange(count, device=lengths.device)
-    return from_start + denoiser.end_positions[left.clamp(min=0)]
+    if end is None:
+        return start[:count]
+    left = tokens[:, None] - 1 - torch.arange(count, device=tokens.device)
+    return start[:count] + end[left.clamp(min=0)]
 
 
 def step_embedding(steps: Tensor, width: int) -> Tensor:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import cast
-from weakref import WeakKeyDictionary, proxy
+from weakref import WeakKeyDictionary
 
 import torch
 from torch import Tensor, nn
@@ -79,7 +79,8 @@ class PreparedDenoiser:
             (torch.cat([w for w, _ in styles]), torch.cat([b for _, b in styles]))
         )
         self._patch_in = self._product(_of(denoiser.patch_in))
-        self._denoiser = proxy(denoiser)
+        self._positions, end = denoiser.positions.detach(), denoiser.end_positions
+        self._end_positions = None if end is None else end.detach()
         self._time_in = denoiser.time_in
 
     def _prepared(self, layer: DecoderLayer) -> _Layer:
@@ -144,7 +145,9 @@ class PreparedDenoiser:
         if token_mask.all():
             token_mask = None
         tokens = self._patch_in(x.unflatten(1, (-1, patch)).flatten(2))
-        tokens = tokens + positions_of(self._denoiser, lengths, tokens.shape[1])
+        tokens = tokens + positions_of(
+            self._positions, self._end_positions, -(-lengths // patch), tokens.shape[1]
+        )
         pieces = iter(styles[:, None].split(self._style_widths, dim=-1))
         for layer, text in zip(self._layers, contexts, strict=True):
             self._pass(layer, tokens, token_mask, text, pieces)
