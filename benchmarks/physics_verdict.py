@@ -24,7 +24,7 @@ from rich.table import Table
 from benchmarks.corruptions import CORRUPTIONS
 from benchmarks.level_clips import level_clips
 from motiondiffuse_ros.corpus.store import Corpus
-from motiondiffuse_ros.physics import Report, assess
+from motiondiffuse_ros.physics import Report, assess, put_on_floor
 from motiondiffuse_ros.physics.criteria import CRITERIA
 
 VERDICTS = ("plausible", "marginal", "implausible")
@@ -46,6 +46,10 @@ class Arguments:
     """Of each clip."""
     seed: int = 2
     """Of the choice and the corruptions."""
+    on_floor: bool = False
+    """Take the floor of each clip to be where its stance is, not where its import has it."""
+    corrupt: bool = True
+    """Also judge the corrupted clips."""
     json: Path | None = None
     """Also write the figures here."""
 
@@ -102,10 +106,13 @@ def main(arguments: Arguments) -> None:
     corpus = Corpus.load(arguments.corpus)
     clips = level_clips(corpus, arguments.split, arguments.clips, arguments.max_seconds, rng)
     rows: dict[str, list[tuple[str, Report]]] = {REAL: []}
-    rows |= {name: [] for name in CORRUPTIONS}
+    kinds = CORRUPTIONS if arguments.corrupt else {}
+    rows |= {name: [] for name in kinds}
     seconds = spent = 0.0
     for clip, motion in track(clips, description="clips"):
-        broken = {kind: corruption.apply(motion, rng) for kind, corruption in CORRUPTIONS.items()}
+        if arguments.on_floor:
+            motion = put_on_floor(motion)
+        broken = {kind: corruption.apply(motion, rng) for kind, corruption in kinds.items()}
         for kind, changed in ({REAL: motion} | broken).items():
             begin = time.process_time()
             report = assess(changed, track=False)
@@ -113,7 +120,8 @@ def main(arguments: Arguments) -> None:
             seconds += changed.duration
             # a report's series would fill the memory
             rows[kind].append((clip.dataset, replace(report, series={})))
-    rows[ALL] = [row for kind in CORRUPTIONS for row in rows[kind]]
+    if kinds:
+        rows[ALL] = [row for kind in kinds for row in rows[kind]]
     figures = verdict_figures(rows)
     Console(width=140).print(verdict_table(figures))
     Console(width=200).print(quantile_table(rows[REAL]))

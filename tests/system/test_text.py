@@ -36,7 +36,8 @@ def test_it_names_the_63_joints_of_the_humanoid(trajectory):
 def test_times_increase_strictly_to_the_length_of_a_sentence(trajectory):
     assert trajectory["times"][0] == 0.0
     assert (np.diff(trajectory["times"]) > 0.0).all()
-    assert 5.5 < trajectory["times"][-1] < 6.5
+    # docs/robots.md: what ends in mid-step comes to stand in 1.5 s more
+    assert min(abs(trajectory["times"][-1] - seconds) for seconds in (6.0, 7.5)) < 0.5
 
 
 def test_positions_and_velocities_are_finite_and_inside_the_limits(trajectory):
