@@ -1,17 +1,19 @@
 """Do samples do what the words say? Prompts judged by kinematic rules, through the planner.
 
-    python -m benchmarks.prompt_probes [--free] [--seeds 8] [--weights DIR] [--json F] [--sheet PNG]
+    python -m benchmarks.prompt_probes [--prompts readme] [--seeds 8] [--json F] [--sheet PNG]
 
-Six prompts and a mirror image, or with --free the longer list of `free_prompts`, whose texts are in
-no training data. Rules are stated beside each; figures are counts over seeds.
+Six prompts and a mirror image; `--prompts free` asks the longer list of `free_prompts`, whose texts
+are in no training data, `--prompts tuning` those to look at while settings are chosen. Rules are
+stated beside each; figures are counts over seeds.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import tyro
@@ -19,8 +21,9 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.free_prompts import FREE_PROMPTS
-from benchmarks.kinematic_rules import travel
+from benchmarks.kinematic_rules import Rule, travel
 from benchmarks.sampled_prompts import Sampling, sample_prompts
+from benchmarks.tuning_prompts import TUNING_PROMPTS
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.render import contact_sheet
 
@@ -44,8 +47,8 @@ class Probe:
 class Options:
     """What to run."""
 
-    free: bool = False
-    """The prompts of `free_prompts` instead of the six."""
+    prompts: Literal["readme", "free", "tuning"] = "readme"
+    """Which list."""
     json: Path | None = None
     """Where to write the counts."""
     sheet: Path | None = None
@@ -121,16 +124,20 @@ PROBES = (
 )
 
 
-FREE_PROBES = tuple(
-    Probe(text, rule.words, lambda motion, _, rule=rule: rule.holds(motion))
-    for text, rule in FREE_PROMPTS.items()
-)
+def _ruled(rules: Mapping[str, Rule]) -> tuple[Probe, ...]:
+    return tuple(
+        Probe(text, rule.words, lambda motion, _, rule=rule: rule.holds(motion))
+        for text, rule in rules.items()
+    )
+
+
+LISTS = {"readme": PROBES, "free": _ruled(FREE_PROMPTS), "tuning": _ruled(TUNING_PROMPTS)}
 
 
 def main() -> None:
     """Run the probes and print the table."""
     options = tyro.cli(Options)
-    probes = FREE_PROBES if options.free else PROBES
+    probes = LISTS[options.prompts]
     plans, settings = sample_prompts([probe.text for probe in probes], options.sampling)
     motions = {text: [plan.motion for plan in own] for text, own in plans.items()}
     walk = float(np.mean([travelled(m) for m in motions[probes[0].text]]))

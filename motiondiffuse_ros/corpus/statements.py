@@ -233,6 +233,14 @@ def statements_of(kinds: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(text for form in _forms(kinds) for text in _sentences(form)[:_COMPARED])
 
 
+def sentences_by_kind() -> dict[str, tuple[str, ...]]:
+    """Return every sentence about a person by the kind of what it states."""
+    return {
+        kind: tuple(text for form in _forms_of(kind) for text in _sentences(form))
+        for kind in _SENTENCES
+    }
+
+
 def _forms(kinds: tuple[str, ...]) -> tuple[Finding, ...]:
     return tuple(form for kind in kinds for form in _forms_of(kind))
 

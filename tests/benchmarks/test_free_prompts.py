@@ -11,6 +11,7 @@ from benchmarks.kinematic_rules import (
     speed_is,
     turns,
 )
+from benchmarks.tuning_prompts import TUNING_PROMPTS
 from motiondiffuse_ros.corpus.importer import load_motion
 
 
@@ -21,6 +22,10 @@ def _clip(paths, name):
 def test_no_prompt_is_a_text_of_the_training_data(training_texts):
     assert not training_texts & set(FREE_PROMPTS)
     assert len(FREE_PROMPTS) >= 60
+
+
+def test_none_was_used_to_choose_settings():
+    assert not set(TUNING_PROMPTS) & set(FREE_PROMPTS)
 
 
 def test_doing_nothing_satisfies_only_the_prompts_that_ask_for_it():
