@@ -118,7 +118,8 @@ class PlantedFeet:
         matrix += weights.own_place * torch.eye(frames, device=certain.device)
         matrix += weights.smooth * bend.T @ bend
         against = standing[..., None] * slide.transpose(1, 2) / self._fps
-        reach = torch.linalg.solve(matrix, -(change.T @ against))
+        # Positive definite: MKL's batched LU has lost its pivots in a process with many threads.
+        reach = torch.cholesky_solve(-(change.T @ against), torch.linalg.cholesky(matrix))
         return _REACH * torch.tanh(reach / _REACH)
 
     def _bend(self, features: Tensor, places: Tensor, speeds: Tensor, reach: Tensor) -> Tensor:
