@@ -34,11 +34,11 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import Representation
 from motiondiffuse_ros.physics.foot_skating import foot_skating
 from motiondiffuse_ros.physics.ground_contact import ground_errors
-from motiondiffuse_ros.physics.repair import Repair, put_on_floor, repair
+from motiondiffuse_ros.physics.repair import put_on_floor, repair, repair_best
 from motiondiffuse_ros.physics.report import IMPLAUSIBLE, assess
 from motiondiffuse_ros.physics.smoothness import joint_jerk
 from motiondiffuse_ros.planner import shipped_weights
-from motiondiffuse_ros.selection import choose, text_matches
+from motiondiffuse_ros.selection import eligible, text_matches
 
 _QUICK_CLIPS, _QUICK_STEPS = 32, 15
 _POOL_DRAWS = 20
@@ -89,15 +89,11 @@ def main(arguments: Arguments) -> None:
         sets = _sampled(pipeline, items, config, arguments)
         rows[name] = sets[0]
         rows[f"{name}, on the floor"] = [put_on_floor(m) for m in sets[0]]
-        repaired = [
-            [repair(m) for m in motions] for motions in track(sets, description="repairing")
-        ]
-        rows[f"{name}, repaired"] = [r.motion for r in repaired[0]]
-        best = [
+        rows[f"{name}, repaired"] = [repair(m).motion for m in track(sets[0], "repairing")]
+        rows[f"{name}, repaired, best of {arguments.candidates}"] = [
             _best(critic, item.text, choice, corpus.representation)
-            for item, choice in zip(items, zip(*repaired, strict=True), strict=True)
+            for item, choice in track(list(zip(items, zip(*sets, strict=True), strict=True)))
         ]
-        rows[f"{name}, repaired, best of {arguments.candidates}"] = best
     figures = {
         name: _figures(motions, items, evaluator, corpus.representation, arguments.seed)
         for name, motions in rows.items()
@@ -109,13 +105,12 @@ def main(arguments: Arguments) -> None:
 
 
 def _best(
-    critic: Evaluator, text: str, choice: Sequence[Repair], representation: Representation
+    critic: Evaluator, text: str, motions: Sequence[Motion], representation: Representation
 ) -> Motion:
     """Choose as the planner does: among those that match the text, the most plausible."""
-    motions = [r.motion for r in choice]
     whole = TimedText(text, 0, motions[0].frames)
     matches = text_matches(critic, representation, motions, [whole])
-    return motions[choose(matches, [r.after.score for r in choice])]
+    return repair_best({i: put_on_floor(motions[i]) for i in eligible(matches)})[1].motion
 
 
 def _sampled(

@@ -83,7 +83,7 @@ def rejoin(motion: Motion, lead_in: Motion, frames: int) -> Motion:
     gain = np.clip(np.arange(motion.frames) / (SETTLE * motion.fps), 0.0, 1.0)
     gain = gain**3 * (10.0 - 15.0 * gain + 6.0 * gain**2)
     lowered = np.outer(gain * stance_height(motion), [0.0, 0.0, 1.0])
-    return replace(motion, root=motion.root - lowered)
+    return motion.with_root(motion.root - lowered)
 
 
 def placed(motion: Motion, pose: Motion) -> Motion:

@@ -31,7 +31,7 @@ from motiondiffuse_ros.manifest import folder_hashes, shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
-from motiondiffuse_ros.physics.repair import put_on_floor, repair
+from motiondiffuse_ros.physics.repair import put_on_floor, repair_best
 from motiondiffuse_ros.physics.report import Report, assess, with_tracking
 from motiondiffuse_ros.request import LIMITS, MotionRequest
 from motiondiffuse_ros.robots import (
@@ -43,7 +43,7 @@ from motiondiffuse_ros.robots import (
     path_scale,
 )
 from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
-from motiondiffuse_ros.selection import choose, eligible, text_matches
+from motiondiffuse_ros.selection import eligible, text_matches
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -470,18 +470,22 @@ class Planner:
 
         def judge() -> tuple[int, float | None, Motion, Report]:
             matches = self._matches(motions, texts)
-            judged: dict[int, tuple[Motion, Report]] = {}
-            able = eligible(matches)
-            for i in able:
-                if repairs:
-                    repaired = repair(motions[i], assessed)
-                    judged[i] = repaired.motion, repaired.report
-                else:
-                    judged[i] = motions[i], assessed(motions[i])
-                preview = judged[i][1].verdict
-                watch.advance("physics", 0.6 * len(judged) / len(able), preview)
-            best = choose(matches, {i: report.score for i, (_, report) in judged.items()})
-            motion, report = judged[best]
+            able = {i: motions[i] for i in eligible(matches)}
+            reports: list[Report] = []
+
+            def judged(motion: Motion) -> Report:
+                reports.append(assessed(motion))
+                share = min(len(reports) / (2 * len(able)), 1.0)
+                watch.advance("physics", 0.6 * share, reports[-1].verdict)
+                return reports[-1]
+
+            if repairs:
+                best, repaired = repair_best(able, judged)
+                motion, report = repaired.motion, repaired.report
+            else:
+                scored = {i: judged(candidate) for i, candidate in able.items()}
+                best = max(scored, key=lambda i: scored[i].score)
+                motion, report = able[best], scored[best]
             if self.config.execution != NONE:
                 motion, report = execute(
                     motion,

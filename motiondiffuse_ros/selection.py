@@ -6,7 +6,7 @@ physics. So only candidates that match the texts about as well as the best one a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -67,13 +67,3 @@ def eligible(matches: Sequence[float | None]) -> list[int]:
     known = [match for match in matches if match is not None]
     least = max(known) - MATCH_MARGIN if known else None
     return [i for i, m in enumerate(matches) if least is None or m is None or m >= least]
-
-
-def choose(matches: Sequence[float | None], scores: Sequence[float] | Mapping[int, float]) -> int:
-    """Return the index of the most plausible among the candidates that match well.
-
-    Args:
-        matches: `text_matches`.
-        scores: Plausibility of each by index, or of each that is `eligible`; higher is better.
-    """
-    return max(eligible(matches), key=lambda i: scores[i])

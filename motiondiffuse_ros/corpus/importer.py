@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -105,7 +104,7 @@ def _leg_length(clip: BvhClip, skeleton_map: SkeletonMap) -> float:
 
 def on_floor(motion: Motion) -> Motion:
     """Return the motion with the floor its feet stand on at z = 0."""
-    return replace(motion, root=motion.root - [0.0, 0.0, floor_height(motion)])
+    return motion.with_root(motion.root - [0.0, 0.0, floor_height(motion)])
 
 
 def floor_height(motion: Motion) -> float:

@@ -79,6 +79,13 @@ class Motion:
         """Root heading about the vertical [T], rad, unwrapped; 0 faces +x."""
         return np.unwrap(rot.twist_angle(self.rotations[:, 0], axis=2))
 
+    def with_root(self, root: Array) -> Motion:
+        """Return the same rotations on another path of the root [T, 3], m."""
+        moved = replace(self, root=root)
+        if "global_rotations" in self.__dict__:
+            moved.__dict__["global_rotations"] = self.global_rotations
+        return moved
+
     def slice(self, start: int, stop: int) -> Motion:
         """Return the frames from start up to, not including, stop."""
         return replace(self, root=self.root[start:stop], rotations=self.rotations[start:stop])

@@ -24,17 +24,32 @@ def identity(*shape: int) -> Array:
 
 def multiply(a: Array, b: Array) -> Array:
     """Return the Hamilton product a * b (apply b first, then a)."""
-    aw, ax, ay, az = np.moveaxis(np.asarray(a, dtype=np.float64), -1, 0)
-    bw, bx, by, bz = np.moveaxis(np.asarray(b, dtype=np.float64), -1, 0)
-    return np.stack(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ],
-        axis=-1,
+    aw, ax, ay, az = _parts(np.asarray(a, dtype=np.float64))
+    bw, bx, by, bz = _parts(np.asarray(b, dtype=np.float64))
+    return _joined(
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
     )
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Return the cross product of vectors; numpy's own takes far longer than its arithmetic."""
+    (ax, ay, az), (bx, by, bz) = _parts(a), _parts(b)
+    return _joined(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+
+
+def _parts(a: Array) -> list[Array]:
+    # numpy's moveaxis and stack cost as much as the arithmetic on a few hundred frames
+    return [a[..., i] for i in range(a.shape[-1])]
+
+
+def _joined(*parts: Array) -> Array:
+    out = np.empty((*parts[0].shape, len(parts)))
+    for i, part in enumerate(parts):
+        out[..., i] = part
+    return out
 
 
 def conjugate(q: Array) -> Array:
@@ -45,8 +60,8 @@ def conjugate(q: Array) -> Array:
 def rotate(q: Array, v: Array) -> Array:
     """Rotate vectors v [..., 3] by unit quaternions q [..., 4]."""
     w, u = q[..., :1], q[..., 1:]
-    t = 2.0 * np.cross(u, v)
-    return v + w * t + np.cross(u, t)
+    t = 2.0 * cross(u, v)
+    return v + w * t + cross(u, t)
 
 
 def normalise(q: Array) -> Array:
@@ -69,20 +84,17 @@ def from_matrix(m: Array) -> Array:
 
 def to_matrix(q: Array) -> Array:
     """Convert quaternions to rotation matrices [..., 3, 3]."""
-    w, x, y, z = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
-    return np.stack(
-        [
-            1 - 2 * (y * y + z * z),
-            2 * (x * y - w * z),
-            2 * (x * z + w * y),
-            2 * (x * y + w * z),
-            1 - 2 * (x * x + z * z),
-            2 * (y * z - w * x),
-            2 * (x * z - w * y),
-            2 * (y * z + w * x),
-            1 - 2 * (x * x + y * y),
-        ],
-        axis=-1,
+    w, x, y, z = _parts(np.asarray(q, dtype=np.float64))
+    return _joined(
+        1 - 2 * (y * y + z * z),
+        2 * (x * y - w * z),
+        2 * (x * z + w * y),
+        2 * (x * y + w * z),
+        1 - 2 * (x * x + z * z),
+        2 * (y * z - w * x),
+        2 * (x * z - w * y),
+        2 * (y * z + w * x),
+        1 - 2 * (x * x + y * y),
     ).reshape(*w.shape, 3, 3)
 
 
@@ -99,7 +111,7 @@ def from_columns(columns: Array) -> Array:
     a, b = columns[..., :3], columns[..., 3:]
     x = unit(a)
     y = unit(b - np.sum(x * b, axis=-1, keepdims=True) * x)
-    return from_matrix(np.stack([x, y, np.cross(x, y)], axis=-1))
+    return from_matrix(np.stack([x, y, cross(x, y)], axis=-1))
 
 
 def from_rotation_vector(v: Array) -> Array:

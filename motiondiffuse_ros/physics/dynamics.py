@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion import Motion
-from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.rotations import Array, cross
 from motiondiffuse_ros.physics.body_states import BodyStates, humanoid_states
-from motiondiffuse_ros.physics.floor_forces import cross, floor_forces
+from motiondiffuse_ros.physics.floor_forces import floor_forces
 from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.state import state_velocities
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.rotations import Array, cross
 
 FRICTION = 1.0
 """Coefficient of the friction cones (shoes on a dry floor)."""
@@ -73,11 +73,3 @@ def _descend(left: Array, step: Array, slope: Array, needed: Array, columns: Arr
             break
         share[worse] *= 0.5
     return left - share[:, None] * step
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Return the cross product; numpy's own takes far longer than its arithmetic."""
-    x = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
-    y = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
-    z = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return np.stack([x, y, z], axis=-1)

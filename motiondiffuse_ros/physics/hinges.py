@@ -45,24 +45,26 @@ def continuous_hinge_angles(rotations: Array, order: str, centre: Array) -> Arra
     turns, is chosen for the clip: the one that stays nearer to the middle of the hinges' ranges.
 
     Args:
-        rotations: [T, 4], wxyz.
+        rotations: Of one joint or more, [T, ..., 4], wxyz.
         order: As for `hinge_angles`.
-        centre: Middle of the range of each hinge [3], rad.
+        centre: Middle of the range of each hinge [..., 3], rad.
 
     Returns:
-        Angles [T, 3], rad.
+        Angles [T, ..., 3], rad.
     """
     principal = hinge_angles(rotations, order)
     other = _other_triple(principal)
     stays = _distance(principal[1:], principal[:-1])
     # the second triple of one rotation is as far from the first of another as vice versa
     switches = _distance(principal[1:], other[:-1]) < stays
-    branch = np.concatenate([[False], np.logical_xor.accumulate(switches)])
-    paths = [
-        _nearest_turns(np.unwrap(np.where(flag[:, None], other, principal), axis=0), centre)
+    branch = np.zeros(principal.shape[:-1], dtype=bool)
+    np.logical_xor.accumulate(switches, axis=0, out=branch[1:])
+    one, two = (
+        _nearest_turns(np.unwrap(np.where(flag[..., None], other, principal), axis=0), centre)
         for flag in (branch, ~branch)
-    ]
-    return min(paths, key=lambda path: float(np.mean(np.abs(path - centre))))
+    )
+    off_one, off_two = (np.abs(path - centre).mean(axis=(0, -1)) for path in (one, two))
+    return np.where((off_one <= off_two)[..., None], one, two)
 
 
 def hinge_rotations(angles: Array, order: str) -> Array:

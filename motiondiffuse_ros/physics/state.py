@@ -14,15 +14,13 @@ from motiondiffuse_ros.physics.hinges import continuous_hinge_angles, hinge_rota
 def hinges_from_motion(motion: Motion) -> Array:
     """Return the humanoid's hinge angles [T, 63], rad, continuous and not clamped."""
     table = hinge_table()
-    middle = (table.lower + table.upper) / 2
-    out = np.empty((motion.frames, len(table.names)))
-    for n, (joint, order) in enumerate(zip(table.joints, table.orders, strict=True)):
-        columns = slice(3 * n, 3 * n + 3)
-        tilt = rot.about_axis(0, -table.tilts[n])
-        out[:, columns] = continuous_hinge_angles(
-            rot.multiply(motion.rotations[:, joint], tilt), order, middle[columns]
-        )
-    return out
+    middle = ((table.lower + table.upper) / 2).reshape(-1, 3)
+    turned = rot.multiply(motion.rotations[:, list(table.joints)], rot.about_axis(0, -table.tilts))
+    out = np.empty((motion.frames, len(table.joints), 3))
+    for order in set(table.orders):
+        same = [n for n, other in enumerate(table.orders) if other == order]
+        out[:, same] = continuous_hinge_angles(turned[:, same], order, middle[same])
+    return out.reshape(motion.frames, -1)
 
 
 def motion_to_qpos(motion: Motion) -> Array:

@@ -14,7 +14,7 @@ Section 4.1 of the paper. Rates are per frame, and the data hold what the publis
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -151,7 +151,7 @@ class GuoFeatures(Layout, ABC):
         positions = vectors_to_z_up(self.to_canonical(self.positions(features)))
         motion = motion_from_positions(positions, fps)
         # their floor is at the lowest joint, ours below the sole
-        return replace(motion, root=motion.root + _TO_SOLE)
+        return motion.with_root(motion.root + _TO_SOLE)
 
     def _across(self, positions: Array, hips: float) -> Array:
         """Return what points ahead [T, 3]: normal to the line from left to right, and to up."""

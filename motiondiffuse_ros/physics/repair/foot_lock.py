@@ -67,7 +67,7 @@ def lock_feet(motion: Motion, rule: ContactRule = _RULE) -> Motion:
     corners = np.stack([sole_probes(side).centres(motion) for side in SIDES], axis=1)
     contacts = foot_contacts(corners, motion.fps, rule)
     feet = [_placed_foot(motion, side, contacts[:, n]) for n, side in enumerate(SIDES)]
-    motion = replace(motion, root=motion.root + _root_shift(motion, feet))
+    motion = motion.with_root(motion.root + _root_shift(motion, feet))
     rotations = motion.global_rotations.copy()
     for side, foot in zip(SIDES, feet, strict=True):
         _pose_leg(motion, rotations, side, foot)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
@@ -18,7 +16,7 @@ _EASE = 0.1  # s
 
 def put_on_floor(motion: Motion) -> Motion:
     """Move a motion vertically, as a whole, so that its stance is on the floor at z = 0."""
-    return replace(motion, root=motion.root - np.array([0.0, 0.0, stance_height(motion)]))
+    return motion.with_root(motion.root - np.array([0.0, 0.0, stance_height(motion)]))
 
 
 def stance_height(motion: Motion) -> float:
@@ -44,4 +42,4 @@ def follow_floor(motion: Motion) -> Motion:
     carried = maximum_filter1d(minimum_filter1d(lowest, frames), frames)
     off = carried - np.clip(carried, -_LEFT_ALONE, _LEFT_ALONE)
     off = gaussian_filter1d(off, _EASE * motion.fps, mode="nearest")
-    return replace(motion, root=motion.root - off[:, None] * np.array([0.0, 0.0, 1.0]))
+    return motion.with_root(motion.root - off[:, None] * np.array([0.0, 0.0, 1.0]))

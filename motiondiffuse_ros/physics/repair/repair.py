@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -41,7 +41,11 @@ class Repair:
         return replace(self.after, before_repair=self.before.metrics)
 
 
-def repair(motion: Motion, judge: Callable[[Motion], Report] | None = None) -> Repair:
+def repair(
+    motion: Motion,
+    judge: Callable[[Motion], Report] | None = None,
+    before: Report | None = None,
+) -> Repair:
     """Repair a motion, unless that makes it less plausible.
 
     Where the whole repair does, it is put on the floor and no more; where that does, it stays.
@@ -49,9 +53,10 @@ def repair(motion: Motion, judge: Callable[[Motion], Report] | None = None) -> R
     Args:
         motion: At any rate; one that is not finite or too short is returned as it is.
         judge: Makes the reports; `assess` without simulation if None.
+        before: What it says of `motion`, if that is known.
     """
     judge = judge or _assessed
-    before = judge(motion)
+    before = before or judge(motion)
     if motion.frames < MIN_FRAMES or before.score == 0.0:
         return Repair(motion, before, before)
     on_floor = smooth_root(follow_floor(put_on_floor(motion)))
@@ -61,6 +66,30 @@ def repair(motion: Motion, judge: Callable[[Motion], Report] | None = None) -> R
         if not worse(after, before):
             return Repair(repaired, before, after)
     return Repair(motion, before, before)
+
+
+def repair_best(
+    candidates: Mapping[int, Motion],
+    judge: Callable[[Motion], Report] | None = None,
+) -> tuple[int, Repair]:
+    """Repair candidates one after the other, the most plausible first, until one is plausible.
+
+    Args:
+        candidates: At least one.
+        judge: As for `repair`.
+
+    Returns:
+        The plausible one, or the one with the best score after repair, by its key; and its repair.
+    """
+    judge = judge or _assessed
+    before = {i: judge(motion) for i, motion in candidates.items()}
+    repaired: dict[int, Repair] = {}
+    for i in sorted(before, key=lambda i: -before[i].score):
+        repaired[i] = repair(candidates[i], judge, before[i])
+        if repaired[i].after.verdict == PLAUSIBLE:
+            return i, repaired[i]
+    best = max(repaired, key=lambda i: repaired[i].after.score)
+    return best, repaired[best]
 
 
 def worse(after: Report, before: Report) -> bool:
@@ -86,7 +115,7 @@ def repaired_motion(motion: Motion) -> Motion:
 
 def _started_at(motion: Motion, place: Array) -> Motion:
     away = (motion.root[0] - place) * np.array([1.0, 1.0, 0.0])
-    return replace(motion, root=motion.root - away)
+    return motion.with_root(motion.root - away)
 
 
 def _unchanged(motion: Motion) -> Motion:
@@ -98,7 +127,7 @@ def smooth_root(motion: Motion) -> Motion:
     frames = round(_WINDOW * motion.fps / RATE) // 2 * 2 + 1
     if not _DEGREE < frames <= motion.frames:
         return motion
-    return replace(motion, root=savgol_filter(motion.root, frames, _DEGREE, axis=0))
+    return motion.with_root(np.asarray(savgol_filter(motion.root, frames, _DEGREE, axis=0)))
 
 
 def _assessed(motion: Motion) -> Report:
