@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array, cross
+from motiondiffuse_ros.physics.balance import Balance, balance
 from motiondiffuse_ros.physics.body_states import BodyStates, humanoid_states
 from motiondiffuse_ros.physics.floor_forces import floor_forces
 from motiondiffuse_ros.physics.hinge_table import hinge_table
@@ -41,6 +42,7 @@ class Dynamics:
         power: Of each joint [T - 2, K], W; negative where it brakes.
         centre: Centre of mass [T - 2, 3], m.
         supported: Whether anything may push against the floor [T - 2].
+        poise: Where the centre is over what touches the floor.
     """
 
     residual_force: Array = field(repr=False)
@@ -49,6 +51,7 @@ class Dynamics:
     power: Array = field(repr=False)
     centre: Array = field(repr=False)
     supported: NDArray[np.bool_] = field(repr=False)
+    poise: Balance = field(repr=False)
 
 
 def inverse_dynamics(motion: Motion) -> Dynamics:
@@ -89,6 +92,7 @@ def state_dynamics(states: BodyStates) -> Dynamics:
         power=torques * qvel[:, _ROOT:],
         centre=centre,
         supported=np.any(touching, axis=1),
+        poise=balance(centre, places, touching, states.fps),
     )
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.physics.balance import balance
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
 from motiondiffuse_ros.physics.foot_skating import CONTACT_HEIGHT, skating_of
@@ -70,8 +69,6 @@ def measure(states: BodyStates, dynamics: Dynamics) -> dict[str, Series]:
         for name, sole in zip(states.foot_names, states.soles, strict=True)
     }
 
-    touching = states.points.touching()[1:-1]
-    poise = balance(dynamics.centre, states.points.places[1:-1], touching, states.fps)
     overlap, overlapping = self_overlap(states.model, states.qpos)
     excess = limit_excess(
         states.qpos[:, 7:], states.fps, limits.lower, limits.upper, limits.velocity_limits
@@ -94,8 +91,8 @@ def measure(states: BodyStates, dynamics: Dynamics) -> dict[str, Series]:
         "power": _worst(np.abs(dynamics.power), frames, names),
         "residual_force": _aligned(dynamics.residual_force, frames),
         "residual_torque": _aligned(dynamics.residual_torque, frames),
-        "balance": _aligned(1000.0 * np.maximum(poise.from_support, 0.0), frames),
-        "next_step": _aligned(1000.0 * np.maximum(poise.from_next_step, 0.0), frames),
+        "balance": _aligned(1000.0 * np.maximum(dynamics.poise.from_support, 0.0), frames),
+        "next_step": _aligned(1000.0 * np.maximum(dynamics.poise.from_next_step, 0.0), frames),
         "self_collision": Series(1000.0 * overlap, overlapping),
     }
 

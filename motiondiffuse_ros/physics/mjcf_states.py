@@ -18,6 +18,7 @@ from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.floor_points import FloorPoints
 from motiondiffuse_ros.physics.measures import RATE
+from motiondiffuse_ros.physics.torque_limits import torque_limits
 
 _ONE_AXIS = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
 _RIM = np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
@@ -207,27 +208,5 @@ def _limits(model: mujoco.MjModel, velocity_limits: Array | None) -> ModelLimits
         lower=np.where(limited, model.jnt_range[joints, 0], -endless),
         upper=np.where(limited, model.jnt_range[joints, 1], endless),
         velocity_limits=endless if velocity_limits is None else velocity_limits,
-        torque_limits=_torque_limits(model),
+        torque_limits=torque_limits(model),
     )
-
-
-def _torque_limits(model: mujoco.MjModel) -> Array:
-    """Return what joints and actuators allow [K], N m."""
-    limits = np.full(model.njnt, np.inf)
-    own = model.jnt_actfrclimited.astype(bool)
-    limits[own] = np.abs(model.jnt_actfrcrange[own]).max(axis=1)
-    for a in range(model.nu):
-        if model.actuator_trntype[a] == mujoco.mjtTrn.mjTRN_JOINT:
-            joint, gear = model.actuator_trnid[a, 0], abs(model.actuator_gear[a, 0])
-            if model.actuator_forcelimited[a]:
-                most = gear * np.abs(model.actuator_forcerange[a]).max()
-            elif (
-                model.actuator_biastype[a] == mujoco.mjtBias.mjBIAS_NONE
-                and (model.actuator_ctrllimited[a])
-            ):
-                gain = abs(model.actuator_gainprm[a, 0]) * gear
-                most = gain * np.abs(model.actuator_ctrlrange[a]).max()
-            else:
-                continue
-            limits[joint] = min(limits[joint], most)
-    return limits[1:]

@@ -11,6 +11,7 @@ import numpy as np
 
 from motiondiffuse_ros.errors import RobotError
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.physics.torque_limits import torque_limits
 
 _HINGES = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -91,7 +92,7 @@ def load_robot(description: RobotDescription) -> Robot:
     for table in (description.speed_limits, description.rest):
         if unknown := sorted(set(table) - set(names)):
             raise RobotError(f"robot '{description.name}': no joints {unknown} in the model")
-    torque = _torque_limits(model)
+    torque = torque_limits(model)
     for problem, missing in (
         ("position limit", ~model.jnt_limited[1:].astype(bool)),
         ("speed limit", np.array([name not in description.speed_limits for name in names])),
@@ -142,17 +143,3 @@ def solid_points(model: mujoco.MjModel, geom: int) -> Array | None:
         return model.mesh_vert[first : first + int(model.mesh_vertnum[mesh])].astype(float)
     centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
     return centre + half * np.array(list(product((-1.0, 1.0), repeat=3)))
-
-
-def _torque_limits(model: mujoco.MjModel) -> Array:
-    limits = np.full(model.njnt, np.inf)
-    own, none = model.jnt_actfrclimited.astype(bool), mujoco.mjtBias.mjBIAS_NONE
-    limits[own] = model.jnt_actfrcrange[own, 1]
-    for a in range(model.nu):
-        joint = model.actuator_trnid[a, 0]
-        if model.actuator_forcelimited[a]:
-            limits[joint] = min(limits[joint], model.actuator_forcerange[a, 1])
-        elif model.actuator_biastype[a] == none and model.actuator_ctrllimited[a]:
-            gain = model.actuator_gainprm[a, 0] * model.actuator_gear[a, 0]
-            limits[joint] = min(limits[joint], gain * model.actuator_ctrlrange[a, 1])
-    return limits[1:]

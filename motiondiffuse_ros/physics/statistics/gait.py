@@ -13,7 +13,7 @@ from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.balance import GRAVITY
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import from_root, log_of, planted
+from motiondiffuse_ros.physics.statistics.frames import log_of, planted
 
 _LEG_LENGTH = 0.85
 _IN_FLIGHT = 0.04  # m above the lowest place of both soles in the motion
@@ -21,9 +21,11 @@ _USUAL_SWING, _USUAL_STANCE = 0.45, 0.7  # s, where no foot shows any
 _STILL = 0.02  # m or rad: what moves less has no phase
 
 
-def gait(motion: Motion, states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
-    """Return logarithms of times [s] and of dimensionless speeds, and correlations [-1, 1]."""
-    local = from_root(motion)
+def gait(motion: Motion, states: BodyStates, dynamics: Dynamics, local: Array) -> dict[str, float]:
+    """Return logarithms of times [s] and of dimensionless speeds, and correlations [-1, 1].
+
+    `local` are the joints `from_root`.
+    """
     return {
         **_times(states),
         **_flight(states, dynamics),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from motiondiffuse_ros.physics.balance import balance
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
 from motiondiffuse_ros.physics.statistics.frames import log_of, worst_window
@@ -18,8 +17,7 @@ def stillness(states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     steps = np.linalg.norm(np.diff(states.places, axis=0), axis=-1).mean(axis=1) * states.fps
     speed = np.maximum(steps[1:], steps[:-1])
     still = speed < _STILL
-    touching = states.points.touching()[1:-1]
-    off = balance(dynamics.centre, states.points.places[1:-1], touching, states.fps)
+    off = dynamics.poise
     outside = np.maximum(np.nan_to_num(off.from_support, nan=1.0), 0.0)
     left, right = (sole[..., 2].min(axis=1)[1:-1] for sole in states.soles)
     figures = {

@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.body_states import BodyStates
-from motiondiffuse_ros.physics.statistics.frames import from_root, log_of
+from motiondiffuse_ros.physics.statistics.frames import log_of
 
 _GROUPS = {
     "hands": ("left_wrist", "right_wrist"),
@@ -30,9 +30,11 @@ _AFTER = 6  # frames
 _BANDS = ((1.0, 2.0), (2.0, 4.0), (4.0, 7.0), (7.0, 10.1))  # Hz
 
 
-def tempo(motion: Motion, states: BodyStates) -> dict[str, float]:
-    """Return logarithms of speeds, accelerations, jerks and of ratios between them."""
-    local = from_root(motion)
+def tempo(motion: Motion, states: BodyStates, local: Array) -> dict[str, float]:
+    """Return logarithms of speeds, accelerations, jerks and of ratios between them.
+
+    `local` are the joints `from_root`.
+    """
     out: dict[str, float] = {}
     for name, joints in _GROUPS.items():
         out |= _pace(name, local[:, [CANONICAL.index(j) for j in joints]], motion.fps)
