@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import tyro
+import yaml
 from rich.console import Console
 from rich.table import Table
 
@@ -53,7 +54,7 @@ class Options:
     robots: tuple[str, ...] = ("humanoid",)
     """Robots whose retargeting is measured; the first one's is `retarget_realtime_factor`."""
     parameters: dict[str, str] = field(default_factory=dict)
-    """Parameters of the node, beside the length."""
+    """Parameters of the node, beside the length, as YAML has them."""
     json: Path | None = None
     """Where to write the figures."""
     docs: Path | None = None
@@ -67,9 +68,8 @@ def measure(options: Options) -> dict[str, Any]:
     quick = options.quick
     repeats = min(options.repeats, 3) if quick else options.repeats
     record: dict[str, Any] = {"machine": machine()}
-    node = measure_node(
-        options.seconds, repeats, 1 if quick else options.starts, dict(options.parameters)
-    )
+    parameters = {name: yaml.safe_load(text) for name, text in options.parameters.items()}
+    node = measure_node(options.seconds, repeats, 1 if quick else options.starts, parameters)
     record |= node.to_dict()
     sampling = measure_sampling(
         options.seconds, options.candidates, repeats, 3 if quick else options.paper_steps
