@@ -12,13 +12,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import roma
 import torch
+from scipy.linalg import solveh_banded
 from torch import Tensor
 from torch.nn import functional as F
 
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.kinematics import CONTACT_POSITIONS, PoseStateKinematics
+from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import (
     ANKLE_HEIGHT,
     CANONICAL,
@@ -88,7 +91,7 @@ class PlantedFeet:
 
     def __call__(self, features: Tensor) -> Tensor:
         """Return pose states [C, T, 269], denormalised, with legs and the root's height changed."""
-        if features.shape[1] < 3:
+        if features.shape[1] < 3 or not torch.isfinite(features).all():
             return features
         features = features.clone()
         labels = features[..., self._contacts]
@@ -112,15 +115,34 @@ class PlantedFeet:
         contact = certain[:, :-1].unflatten(2, (2, 2))
         slide = (contact[..., None] * slides).sum(3) / contact.sum(3)[..., None].clamp(min=1e-6)
         standing = weights.standing * contact.amax(3).transpose(1, 2)
-        change = torch.eye(frames, device=certain.device).diff(dim=0)
-        bend = change.diff(dim=0)
-        matrix = change.T @ ((standing + weights.own_velocity)[..., None] * change)
-        matrix += weights.own_place * torch.eye(frames, device=certain.device)
-        matrix += weights.smooth * bend.T @ bend
         against = standing[..., None] * slide.transpose(1, 2) / self._fps
-        # Positive definite: MKL's batched LU has lost its pivots in a process with many threads.
-        reach = torch.cholesky_solve(-(change.T @ against), torch.linalg.cholesky(matrix))
+        pull = torch.zeros_like(against[..., :1, :]).expand(-1, -1, frames, -1).clone()
+        pull[..., 1:, :] -= against
+        pull[..., :-1, :] += against
+        bands = self._bands(standing.cpu().double().numpy())
+        solved = [
+            [solveh_banded(band, side, lower=True) for band, side in zip(*both, strict=True)]
+            for both in zip(bands, pull.cpu().double().numpy(), strict=True)
+        ]
+        reach = torch.from_numpy(np.array(solved)).to(pull)
         return _REACH * torch.tanh(reach / _REACH)
+
+    def _bands(self, standing: Array) -> Array:
+        """Return the sum of squares as bands below the diagonal [C, feet, 3, T]."""
+        weights, changes = self._weights, standing + self._weights.own_velocity
+        bands = np.zeros((*standing.shape[:2], 3, standing.shape[2] + 1))
+        diagonal, next_one, second = bands[..., 0, :], bands[..., 1, :], bands[..., 2, :]
+        diagonal += weights.own_place
+        diagonal[..., 1:] += changes
+        diagonal[..., :-1] += changes
+        next_one[..., :-1] -= changes
+        # of the second difference, (1, -2, 1)
+        for first, square in enumerate((1.0, 4.0, 1.0)):
+            diagonal[..., first : first + changes.shape[2] - 1] += weights.smooth * square
+        for first in (0, 1):
+            next_one[..., first : first + changes.shape[2] - 1] -= 2.0 * weights.smooth
+        second[..., :-2] += weights.smooth
+        return bands
 
     def _bend(self, features: Tensor, places: Tensor, speeds: Tensor, reach: Tensor) -> Tensor:
         """Turn each leg at its hip by its reach, and the foot back; returns the new places."""

@@ -145,11 +145,13 @@ def assess(
     _check(cancelled)
     states = humanoid_states(sampled, robot or hinge_table())
     dynamics = state_dynamics(states)
+    _check(cancelled)
     measures = measure(states, dynamics)
     _check(cancelled)
     report = with_fitted_score(
         report_on(measures, segments), statistics(sampled, states, dynamics), sampled.duration
     )
+    _check(cancelled)
     if progress is not None:
         progress(_ASSESSED if track else 1.0)
     if not track:

@@ -99,3 +99,18 @@ def test_only_legs_bend_feet_keep_their_pitch_and_all_is_consistent(real_paths):
 def test_what_is_too_short_to_slide_is_left_alone(frames):
     features = STATE.encode(standing(frames))
     np.testing.assert_array_equal(_planted(features), features.astype(np.float32))
+
+
+def test_what_is_not_finite_is_left_to_whoever_looks_for_it():
+    broken = STATE.encode(standing(40))
+    broken[7, 3] = np.nan
+    np.testing.assert_array_equal(_planted(broken), broken.astype(np.float32))
+
+
+def test_ten_minutes_take_no_more_than_their_parts(real_paths):
+    """A system of equations over all frames, dense, would take gigabytes."""
+    features = _clip(real_paths, "02_01")
+    long = np.tile(features, (12000 // len(features) + 1, 1))
+    planted = _planted(long)
+    inner = slice(3 * len(features), 4 * len(features))
+    assert _slide(planted[inner]) < 0.7 * _slide(long[inner])
