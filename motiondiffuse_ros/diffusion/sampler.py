@@ -21,7 +21,7 @@ from motiondiffuse_ros.diffusion.process import (
     make_scheduler,
     to_clean,
 )
-from motiondiffuse_ros.diffusion.windowed_prediction import WindowedPrediction
+from motiondiffuse_ros.diffusion.windowed_prediction import BATCH_ROWS, WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
 _FRACTIONS = ("part_correction", "time_correction", "apart_above", "planted_below")
@@ -126,19 +126,30 @@ def sample(
     """
     config.validate()
     generator = torch.Generator().manual_seed(seed)
-    x = _noise((candidates, frames, denoiser.config.feature_dim), generator)
-    predict = WindowedPrediction(
-        _guided(denoiser, config, conditioning, unconditional),
-        windows,
-        candidates=candidates,
-        part_correction=config.part_correction,
-        time_correction=config.time_correction,
-        device=denoiser.device,
-        imagination=_imagination(denoiser, windows, config),
-    )
-    return _denoise(
-        predict, x, denoiser, config, generator, constraints, planted, on_step, cancelled
-    )
+    noise = _noise((candidates, frames, denoiser.config.feature_dim), generator)
+    guided = _guided(denoiser, config, conditioning, unconditional)
+    # one candidate of a long timeline fills a batch; others beside it only take memory
+    groups = noise.split(max(1, BATCH_ROWS // max(len(windows), 1)))
+    sampled: list[Tensor] = []
+    for x in groups:
+        predict = WindowedPrediction(
+            guided,
+            windows,
+            candidates=len(x),
+            part_correction=config.part_correction,
+            time_correction=config.time_correction,
+            device=denoiser.device,
+            imagination=_imagination(denoiser, windows, config),
+        )
+
+        def told(done: int, total: int) -> None:
+            if on_step is not None:
+                on_step(len(sampled) * total + done, len(groups) * total)
+
+        sampled.append(
+            _denoise(predict, x, denoiser, config, generator, constraints, planted, told, cancelled)
+        )
+    return torch.cat(sampled)
 
 
 @torch.inference_mode()

@@ -12,7 +12,8 @@ from torch import Tensor
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.imagination import Imagination
 
-_BATCH_ROWS = 16  # bounds memory on long timelines with many candidates
+BATCH_ROWS = 16
+"""Windows that are denoised at once: more take no less time each."""
 
 
 Predictor = Callable[[Tensor, int, Tensor, Tensor], Tensor]
@@ -77,7 +78,7 @@ class WindowedPrediction:
         rows = [(w, c) for w in range(len(windows)) for c in range(candidates)]
         # windows of like length share a batch
         rows.sort(key=lambda row: len(self._weights[row[0]]))
-        self._batches = [rows[i : i + _BATCH_ROWS] for i in range(0, len(rows), _BATCH_ROWS)]
+        self._batches = [rows[i : i + BATCH_ROWS] for i in range(0, len(rows), BATCH_ROWS)]
         self._pulls = _pulls(windows, part_correction, time_correction, device)
 
     def __call__(self, x: Tensor, step: int) -> Tensor:

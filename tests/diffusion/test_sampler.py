@@ -76,6 +76,22 @@ def test_cancel_is_asked_before_every_step(denoiser):
     assert seen == [(1, 8), (2, 8), (3, 8)]
 
 
+def test_candidates_of_a_long_timeline_come_one_after_the_other(denoiser):
+    dim = denoiser.config.feature_dim
+    spans = [Window(f"text {n}", 10 * n, np.ones((10, dim))) for n in range(20)]
+    seen = []
+    motions = _sample(
+        denoiser,
+        windows=spans,
+        frames=200,
+        candidates=3,
+        on_step=lambda done, total: seen.append((done, total)),
+    )
+    assert seen == [(step, 12) for step in range(1, 13)]
+    assert motions.shape == (3, 200, dim)
+    assert all(not torch.equal(motions[a], motions[b]) for a, b in ((0, 1), (1, 2), (0, 2)))
+
+
 def test_values_that_are_not_finite_are_an_error(denoiser):
     with torch.no_grad():
         denoiser.head.out.bias.fill_(float("nan"))
