@@ -66,14 +66,15 @@ def state_dynamics(states: BodyStates) -> Dynamics:
     qvel, qacc = state_velocities(qpos, states.fps)
     frames = len(qpos) - 2
     needed, centre = np.empty((frames, model.nv)), np.empty((frames, 3))
-    wrench, supplied = np.empty((frames, 6)), np.zeros((frames, model.nv))
+    turns, supplied = np.empty((frames, 3, 3)), np.zeros((frames, model.nv))
     touching, places = points.touching()[1:-1], points.places[1:-1]
     weight = float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity))
     for i in range(frames):
         data.qpos, data.qvel, data.qacc = qpos[i + 1], qvel[i], qacc[i]
         mujoco.mj_inverse(model, data)
         needed[i], centre[i] = data.qfrc_inverse, data.subtree_com[1]
-        wrench[i] = _root_wrench(data) / weight
+        turns[i] = data.xmat[1].reshape(3, 3)
+    wrench = _root_wrench(needed, turns, qpos[1:-1, :3] - centre) / weight
     used = touching.any(axis=0)  # most of a body never touches the floor
     left, pushes = floor_forces(wrench, places[:, used] - centre[:, None], touching[:, used])
     where, bodies = places[:, used], points.bodies[used]
@@ -104,10 +105,9 @@ def _without_contact(model: mujoco.MjModel) -> mujoco.MjModel:
     return free
 
 
-def _root_wrench(data: mujoco.MjData) -> Array:
-    """Return the force and the torque about the centre of mass, in the world, on the root."""
-    force = data.qfrc_inverse[:3]
+def _root_wrench(needed: Array, turns: Array, arms: Array) -> Array:
+    """Return force and torque about the centre of mass [T, 6], in the world, on the root."""
+    force = needed[:, :3]
     # a free joint's rotational coordinates are in the body's own frame
-    torque = data.xmat[1].reshape(3, 3) @ data.qfrc_inverse[3:6]
-    arm = data.qpos[:3] - data.subtree_com[1]
-    return np.concatenate([force, torque + cross(arm, force)])
+    torque = (turns @ needed[:, 3:6, None])[..., 0]
+    return np.concatenate([force, torque + cross(arms, force)], axis=1)

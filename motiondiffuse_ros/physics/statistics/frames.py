@@ -15,9 +15,16 @@ PLANTED_SPEED = 0.25
 _PLANTED_HEIGHT = 0.10  # m above the lowest place of the sole in the motion
 
 
+def quantile(values: Array, *shares: float) -> Array:
+    """Return quantiles [percent] as numpy's, whose own takes ten times as long on short series."""
+    ordered = np.sort(values, axis=None)
+    places = np.array(shares) / 100.0 * (len(ordered) - 1)
+    return np.interp(places, np.arange(len(ordered)), ordered)
+
+
 def quantiles(name: str, values: Array, *shares: int) -> dict[str, float]:
     """Return quantiles [percent] under names that end in them."""
-    found = np.quantile(values, np.array(shares) / 100.0)
+    found = quantile(values, *shares)
     return {f"{name}_{share}": float(q) for share, q in zip(shares, found, strict=True)}
 
 

@@ -13,7 +13,7 @@ from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.balance import GRAVITY
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import log_of, planted
+from motiondiffuse_ros.physics.statistics.frames import log_of, planted, quantile
 
 _LEG_LENGTH = 0.85
 _IN_FLIGHT = 0.04  # m above the lowest place of both soles in the motion
@@ -75,7 +75,7 @@ def _flight(states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
         "flight_longest": max(lengths, default=0.0),
         "flight_fall_off_g": off[longest] if off else 0.0,
         "flight_fall_off_g_most": max((abs(x) for x in off), default=0.0),
-        "fall_90": float(np.quantile(fall, 0.98)) if len(fall) else 0.0,
+        "fall_90": float(quantile(fall, 98)[0]) if len(fall) else 0.0,
     }
 
 

@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.body_states import BodyStates
-from motiondiffuse_ros.physics.statistics.frames import log_of
+from motiondiffuse_ros.physics.statistics.frames import log_of, quantile
 
 _GROUPS = {
     "hands": ("left_wrist", "right_wrist"),
@@ -61,7 +61,7 @@ def _pace(name: str, places: Array, fps: float) -> dict[str, float]:
         f"{name}_speed_90": log_of(_upper(speed.max(axis=1)), 0.05),
         f"{name}_acceleration_90": log_of(_upper(acceleration.max(axis=1)), 0.3),
         f"{name}_jerk_peak_over_usual": float(
-            np.log((jerk.max() + 10.0) / (float(np.quantile(jerk.max(axis=1), 0.8)) + 10.0))
+            np.log((jerk.max() + 10.0) / (float(quantile(jerk.max(axis=1), 80)[0]) + 10.0))
         ),
     }
 
@@ -112,4 +112,4 @@ def _spectrum(name: str, angles: Array, fps: float) -> dict[str, float]:
 
 
 def _upper(values: Array) -> float:
-    return float(np.quantile(values, 0.9))
+    return float(quantile(values, 90)[0])
