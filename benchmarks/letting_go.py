@@ -22,15 +22,14 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.speed_parts.clock import machine
+from benchmarks.speed_parts.node import request_of
 from motiondiffuse_ros.errors import ErrorCode
-from motiondiffuse_ros.msg import MotionRequest, MotionSegment
 from motiondiffuse_ros.ros.client import MotionClient
 from motiondiffuse_ros.ros.processes import isolate, ros_arguments, running
 
 PATIENCE = 180.0
 """For an answer [s]."""
 
-TEXT = "a person walks forward and waves with the right hand"
 GRACE_MS = 100.0
 LONGEST_GAP_MS = 200.0
 
@@ -92,7 +91,7 @@ def _whole(client: MotionClient, seconds: float) -> tuple[float, float, np.ndarr
     told: list[float] = []
     began = time.perf_counter()
     result = client.generate(
-        _request(seconds), lambda _: told.append(time.perf_counter()), PATIENCE
+        request_of(seconds), lambda _: told.append(time.perf_counter()), PATIENCE
     )
     ended = time.perf_counter()
     assert result.error_code == ErrorCode.SUCCESS, result.message
@@ -103,18 +102,13 @@ def _whole(client: MotionClient, seconds: float) -> tuple[float, float, np.ndarr
 def _cancelled(client: MotionClient, seconds: float, after: float) -> tuple[float, ErrorCode]:
     """Return the time from a cancel to the result [s], and how the goal ended."""
     began = time.perf_counter()
-    goal = client.send(_request(seconds), lambda _: None, PATIENCE)
+    goal = client.send(request_of(seconds), lambda _: None, PATIENCE)
     while (left := began + after - time.perf_counter()) > 0.0:
         client.spin(left)
     asked = time.perf_counter()
     goal.cancel_goal_async()
     result = client.result(goal, PATIENCE)
     return time.perf_counter() - asked, ErrorCode(result.error_code)
-
-
-def _request(seconds: float) -> MotionRequest:
-    segment = MotionSegment(text=TEXT, start=0.0, end=seconds)
-    return MotionRequest(segments=[segment], duration=seconds)
 
 
 def main(options: Options) -> None:

@@ -196,8 +196,9 @@ def summary(log: Log, config: SoakConfig) -> dict[str, object]:
     megabytes = samples[:, 1] / 1e6
     kept = samples[:, 0] >= config.warm_up * samples[-1, 0]
     minute = samples[kept, 0] // HELD
-    least = np.array([megabytes[kept][minute == m].min() for m in np.unique(minute)])
-    slope, margin = growth(np.unique(minute) * HELD / 3600.0, least)
+    minutes = np.unique(minute)
+    least = np.array([megabytes[kept][minute == m].min() for m in minutes])
+    slope, margin = growth(minutes * HELD / 3600.0, least)
     return {
         "config": asdict(config),
         "minutes": round(float(samples[-1, 0]) / 60.0, 2),

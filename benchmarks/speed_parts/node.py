@@ -84,7 +84,7 @@ def measure_node(
                 log = Path(folder) / "node.log"
                 with running("motiondiffuse_ros.ros.node", arguments, log) as process:
                     listener.wait_for_node(PATIENCE)
-                    goal = listener.send(_request(seconds), lambda feedback: None, PATIENCE)
+                    goal = listener.send(request_of(seconds), lambda feedback: None, PATIENCE)
                     startup.append(time.perf_counter() - began)
                     listener.result(goal, PATIENCE)
                     if start < starts - 1:
@@ -127,6 +127,7 @@ class _Listener(MotionClient):
         self._first = self._first or self._last
 
 
-def _request(seconds: float) -> MotionRequest:
+def request_of(seconds: float) -> MotionRequest:
+    """Return the request of so many seconds [s] that the node is measured with."""
     segment = MotionSegment(text=TEXT, start=0.0, end=seconds)
     return MotionRequest(segments=[segment], duration=seconds)

@@ -110,15 +110,13 @@ class PlantedFeet:
         The sum of squares in `PlantingWeights` is least; a foot's contact is that of its ankle or
         its toe, whichever is more certain.
         """
-        weights, frames = self._weights, certain.shape[1]
+        weights = self._weights
         slides = speeds[..., [0, 2]].unflatten(2, (2, 2))
         contact = certain[:, :-1].unflatten(2, (2, 2))
         slide = (contact[..., None] * slides).sum(3) / contact.sum(3)[..., None].clamp(min=1e-6)
         standing = weights.standing * contact.amax(3).transpose(1, 2)
         against = standing[..., None] * slide.transpose(1, 2) / self._fps
-        pull = torch.zeros_like(against[..., :1, :]).expand(-1, -1, frames, -1).clone()
-        pull[..., 1:, :] -= against
-        pull[..., :-1, :] += against
+        pull = F.pad(against, (0, 0, 0, 1)) - F.pad(against, (0, 0, 1, 0))
         bands = self._bands(standing.cpu().double().numpy())
         solved = [
             [solveh_banded(band, side, lower=True) for band, side in zip(*both, strict=True)]
