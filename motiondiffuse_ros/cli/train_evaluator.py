@@ -26,6 +26,8 @@ class TrainEvaluator:
     """Corpus folder made by `motiondiffuse corpus build`."""
     out: Path = Path("runs/evaluator")
     """Folder for the evaluator."""
+    start: Path | None = None
+    """Folder of an evaluator to go on from; its recogniser is kept as it is."""
     training: EvaluatorTraining = field(default_factory=EvaluatorTraining)
 
 
@@ -36,10 +38,13 @@ def main(arguments: Sequence[str]) -> int:
     if options.out.exists() and any(options.out.iterdir()):
         raise CheckpointError(f"{options.out} is not empty; choose another --out")
     from motiondiffuse_ros.corpus.store import Corpus
+    from motiondiffuse_ros.evaluation.evaluator import Evaluator
     from motiondiffuse_ros.evaluation.training import train_evaluator
     from motiondiffuse_ros.text import load_text_encoder
 
     corpus = Corpus.load(options.corpus)
+    encoder = load_text_encoder("minilm")
+    start = None if options.start is None else Evaluator.from_pretrained(options.start, encoder)
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     losses: dict[str, float] = {}
@@ -54,14 +59,18 @@ def main(arguments: Sequence[str]) -> int:
 
         evaluator = train_evaluator(
             corpus,
-            load_text_encoder("minilm"),
-            EvaluatorConfig(feature_dim=corpus.representation.dim),
+            encoder,
+            EvaluatorConfig(feature_dim=corpus.representation.dim)
+            if start is None
+            else start.network.config,
             options.training,
             show,
+            start,
         )
     evaluator.save_pretrained(options.out)
     summary = {
         "training": options.training.to_dict(),
+        "started_from": None if start is None else start.sha256,
         "evaluator": evaluator.network.config.to_dict(),
         "last_losses": losses,
         "train_clips": len(corpus.split("train")),

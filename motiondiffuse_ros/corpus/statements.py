@@ -10,7 +10,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.statement_rules import Finding, findings
+from motiondiffuse_ros.corpus.wordings import wordings
 from motiondiffuse_ros.motion.features import PoseState, Representation
 from motiondiffuse_ros.motion.rotations import Array
 
@@ -194,7 +196,7 @@ class Statement:
 
     Attributes:
         kind: What it is about, without its side.
-        texts: Sentences that say it, each as good as the other.
+        texts: Sentences that say it, each as good as the other; also in other words (`wordings`).
     """
 
     kind: str
@@ -254,17 +256,22 @@ def _forms_of(kind: str) -> tuple[Finding, ...]:
 
 
 def _texts(finding: Finding) -> tuple[str, ...]:
-    return tuple(text for sentence in _sentences(finding) for text in _voices(sentence))
+    voiced = (text for sentence in _sentences(finding) for text in _voices(sentence))
+    return *voiced, *_filled(wordings(finding.kind), finding)
 
 
 def _sentences(finding: Finding) -> tuple[str, ...]:
-    sentences = _SENTENCES[finding.kind]
+    return _filled(_SENTENCES[finding.kind], finding)
+
+
+def _filled(texts: tuple[str, ...], finding: Finding) -> tuple[str, ...]:
+    """Return texts written for the left, or for any distance, as they are for a finding."""
     if finding.side < 0:
-        return tuple(map(_swap_sides, sentences))
+        return tuple(map(mirror_caption, texts))
     if finding.metres:
         way = f"{_NUMBERS[finding.metres - 1]} meter{'s' if finding.metres > 1 else ''}"
-        return tuple(sentence.format(n=way) for sentence in sentences)
-    return sentences
+        return tuple(text.format(n=way) for text in texts)
+    return texts
 
 
 def _voices(sentence: str) -> tuple[str, ...]:
@@ -273,7 +280,3 @@ def _voices(sentence: str) -> tuple[str, ...]:
     told = _BODY.sub("your ", _VERB.sub(r"\1\2", deed))
     # twice: users tell rather than describe
     return sentence, *(other + deed for other in _OTHERS), told, told
-
-
-def _swap_sides(text: str) -> str:
-    return "right".join(part.replace("right", "left") for part in text.split("left"))

@@ -6,6 +6,8 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -19,7 +21,7 @@ from motiondiffuse_ros.evaluation.config import EvaluatorConfig, EvaluatorTraini
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
 from motiondiffuse_ros.text import TextEncoder
-from motiondiffuse_ros.training.texts import CaptionStates, all_captions
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions, texts_of
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
 _ALIKE = 0.9
@@ -37,11 +39,21 @@ def train_evaluator(
     config: EvaluatorConfig,
     training: EvaluatorTraining,
     on_progress: Progress | None = None,
+    start: Evaluator | None = None,
 ) -> Evaluator:
-    """Train the text-motion evaluator and, where clips have actions, the action recogniser."""
+    """Train the text-motion evaluator and, where clips have actions, the action recogniser.
+
+    Args:
+        corpus: Whose training split is learnt.
+        encoder: Of the texts.
+        config: Of the networks; that of `start` if given.
+        training: How to train.
+        on_progress: Told of every step.
+        start: Go on from its text-motion evaluator and keep its recogniser.
+    """
     clips = corpus.split("train")
     torch.manual_seed(training.seed)
-    network = TextMotionNetwork(config)
+    network = TextMotionNetwork(config) if start is None else deepcopy(start.network)
     captions = CaptionStates(all_captions(clips), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
@@ -56,7 +68,9 @@ def train_evaluator(
     pairs = _windows(corpus, clips, config, training, training.statements)
     _fit(network, pairs, pair_loss, training, training.minutes, "text and motion", on_progress)
 
-    labelled = [_with_label(clip) for clip in clips if action_of(clip) is not None]
+    if start is not None:
+        return replace(start, network=network.eval())
+    labelled = [clip for clip in clips if action_of(clip) is not None]
     actions = actions_of(labelled)
     recogniser = ActionNetwork(config, len(actions)) if actions else None
     if recogniser is not None:
@@ -86,7 +100,7 @@ def _fit_recogniser(
         logits = recogniser(batch.features, batch.lengths)
         return F.cross_entropy(logits, torch.tensor([index[text] for text in batch.texts]))
 
-    windows = _windows(corpus, labelled, config, training, 0.0)
+    windows = _windows(corpus, labelled, config, training, 0.0, _labels)
     _fit(recogniser, windows, loss, training, training.action_minutes, "actions", on_progress)
 
 
@@ -116,6 +130,7 @@ def _windows(
     config: EvaluatorConfig,
     training: EvaluatorTraining,
     statements: float,
+    texts: Callable[[Clip], Sequence[str]] = texts_of,
 ) -> Iterator[WindowBatch]:
     sampler = WindowSampler(
         corpus,
@@ -123,16 +138,17 @@ def _windows(
         max_frames=config.max_frames,
         mirror=0.5,
         statements=statements,
+        texts=texts,
         seed=training.seed,
     )
     return sampler.batches(training.batch_size)
 
 
-def _with_label(clip: Clip) -> Clip:
-    """Put the label in the place of the captions, so that mirroring swaps it too."""
+def _labels(clip: Clip) -> tuple[str, ...]:
+    """Return the label as the only text, so that mirroring swaps its side."""
     label = action_of(clip)
     assert label is not None
-    return Clip(clip.name, clip.dataset, clip.split, (label,), clip.start, clip.frames)
+    return (label,)
 
 
 def _fit(

@@ -10,6 +10,7 @@ from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import forms_of
 from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.store import Clip
+from motiondiffuse_ros.corpus.wordings import wordings_of_clip
 from motiondiffuse_ros.evaluation.actions import action_of
 from motiondiffuse_ros.text import TextEncoder, TokenStates
 
@@ -45,9 +46,15 @@ class CaptionStates:
 
 
 def texts_of(clip: Clip) -> tuple[str, ...]:
-    """Return the captions of a clip and, where its name has one, the words of its action label."""
+    """Return what may be said of a clip.
+
+    Its captions, where its name has one the words of its action label, and some other words for
+    what they say.
+    """
     label = action_of(clip)
-    return clip.captions if label is None else (*clip.captions, label)
+    said = clip.captions if label is None else (*clip.captions, label)
+    deeds = (*clip.captions[:1], *said[len(clip.captions) :])
+    return *said, *wordings_of_clip(clip.name, deeds)
 
 
 def all_captions(clips: Iterable[Clip]) -> set[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,8 +67,22 @@ class WindowSampler:
         mirror: float,
         statements: float = 0.0,
         crop: float = 0.0,
+        texts: Callable[[Clip], Sequence[str]] = texts_of,
         seed: int,
     ) -> None:
+        """Prepare to draw.
+
+        Args:
+            corpus: Holds the features of the clips.
+            clips: To draw from.
+            max_frames: Longest window.
+            mirror: Share of mirrored windows.
+            statements: Share of windows with a statement for a text.
+            crop: Share of windows of long clips that are shorter than they could be.
+            texts: What may be said of a clip.
+            seed: Of the draws.
+        """
+        self._texts = texts
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
         self._mirror, self._statements, self._crop = mirror, statements, crop
         self._shortest = min(round(_CROP_SECONDS * corpus.fps), max_frames)
@@ -102,7 +116,8 @@ class WindowSampler:
         corpus = self._corpus
         features = corpus.of(clip)[start : start + frames]
         texts = (
-            name_side(text, features, corpus.representation, corpus.fps) for text in texts_of(clip)
+            name_side(text, features, corpus.representation, corpus.fps)
+            for text in self._texts(clip)
         )
         return _Window(clip, start, frames, tuple(texts))
 

@@ -113,5 +113,12 @@ def test_an_evaluator_is_trained_into_an_empty_folder(folders, tmp_path):
     assert (out / "config.json").is_file()
     with pytest.raises(CheckpointError, match="is not empty; choose another --out"):
         train_evaluator.main([*corpus, *few])
+    again = tmp_path / "again"
+    assert train_evaluator.main([*corpus[:3], str(again), *few, "--start", str(out)]) == 0
+    assert json.loads((again / "training.json").read_text())["started_from"]
+    first, second = ((f / "actions.safetensors").read_bytes() for f in (out, again))
+    assert first == second
+    first, second = ((f / "text_motion.safetensors").read_bytes() for f in (out, again))
+    assert first != second
     with pytest.raises(InputError, match="evaluator batch_size must be at least 2"):
         train_evaluator.main([*corpus, "--batch-size", "1"])
