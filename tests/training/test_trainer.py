@@ -93,7 +93,9 @@ def test_a_corpus_of_another_representation_is_refused(corpus, encoder, tmp_path
 
 def test_mirrored_windows_have_mirrored_features_and_words(corpus):
     clip = next(c for c in corpus.clips if "right hand" in c.captions[0])
-    sampler = WindowSampler(corpus, [clip], max_frames=64, mirror=1.0, seed=0)
+    sampler = WindowSampler(
+        corpus, [clip], max_frames=64, mirror=1.0, texts=lambda c: c.captions, seed=0
+    )
     batch = next(sampler.batches(4))
     assert set(batch.texts) == {"a person waves with the left hand"}
     features = corpus.statistics.denormalise(batch.features[0, :40].numpy())
