@@ -9,7 +9,7 @@ from synthetic import standing, waving
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from motiondiffuse_ros.corpus.importer import load_motion
-from motiondiffuse_ros.corpus.statements import all_statements
+from motiondiffuse_ros.corpus.statements import Statement, all_statements, state_in_reverse
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.errors import CheckpointError, InputError
 from motiondiffuse_ros.motion.features import REPRESENTATIONS
@@ -119,7 +119,9 @@ def test_walks_are_also_shown_in_reverse_as_walking_backward(real_paths):
     walks = corpus_of([("02_01", "train", "a person walks", walk)])
     sampler = WindowSampler(walks, walks.clips, max_frames=64, mirror=0.0, statements=1.0, seed=0)
     batch = next(sampler.batches(32))
-    backward = [i for i, text in enumerate(batch.texts) if "back" in text]
+    going_back = state_in_reverse(Statement("walk", ()))
+    assert going_back is not None
+    backward = [i for i, text in enumerate(batch.texts) if text in going_back.texts]
     assert 0 < len(backward) < 32
     for i, row in enumerate(batch.features.numpy()):
         features = walks.statistics.denormalise(row[: batch.lengths[i]])
