@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.statement_rules import Finding, findings
@@ -255,6 +256,7 @@ def _forms_of(kind: str) -> tuple[Finding, ...]:
     return (Finding(kind),)
 
 
+@cache  # asked for every window of a corpus
 def _texts(finding: Finding) -> tuple[str, ...]:
     voiced = (text for sentence in _sentences(finding) for text in _voices(sentence))
     return *voiced, *_filled(wordings(finding.kind), finding)

@@ -506,7 +506,8 @@ def wordings(kind: str) -> tuple[str, ...]:
     return _thinned(_voiced(STATED.get(kind, ())), _OF_A_KIND, kind)
 
 
-def wordings_of_clip(name: str, texts: Sequence[str]) -> tuple[str, ...]:
+@cache  # asked whenever a window is drawn
+def wordings_of_clip(name: str, texts: tuple[str, ...]) -> tuple[str, ...]:
     """Return a few other words for what is done in a clip, always the same.
 
     Args:

@@ -52,9 +52,9 @@ def texts_of(clip: Clip) -> tuple[str, ...]:
     what they say.
     """
     label = action_of(clip)
-    said = clip.captions if label is None else (*clip.captions, label)
-    deeds = (*clip.captions[:1], *said[len(clip.captions) :])
-    return *said, *wordings_of_clip(clip.name, deeds)
+    labels = () if label is None else (label,)
+    deeds = (*clip.captions[:1], *labels)
+    return *clip.captions, *labels, *wordings_of_clip(clip.name, deeds)
 
 
 def all_captions(clips: Iterable[Clip]) -> set[str]:
