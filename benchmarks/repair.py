@@ -38,7 +38,7 @@ from motiondiffuse_ros.physics.repair import put_on_floor, repair, repair_best
 from motiondiffuse_ros.physics.report import IMPLAUSIBLE, assess
 from motiondiffuse_ros.physics.smoothness import joint_jerk
 from motiondiffuse_ros.planner import shipped_weights
-from motiondiffuse_ros.selection import eligible, text_matches
+from motiondiffuse_ros.selection import TextMatch, eligible
 
 _QUICK_CLIPS, _QUICK_STEPS = 32, 15
 _POOL_DRAWS = 20
@@ -109,7 +109,7 @@ def _best(
 ) -> Motion:
     """Choose as the planner does: among those that match the text, the most plausible."""
     whole = TimedText(text, 0, motions[0].frames)
-    matches = text_matches(critic, representation, motions, [whole])
+    matches = TextMatch(critic, [whole])([representation.encode(m) for m in motions])
     return repair_best({i: put_on_floor(motions[i]) for i in eligible(matches)})[1].motion
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -31,6 +31,7 @@ from motiondiffuse_ros.manifest import folder_hashes, shipped
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
+from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.repair import put_on_floor, repair_best
 from motiondiffuse_ros.physics.report import Report, assess, with_tracking
 from motiondiffuse_ros.request import LIMITS, MotionRequest
@@ -43,7 +44,7 @@ from motiondiffuse_ros.robots import (
     path_scale,
 )
 from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
-from motiondiffuse_ros.selection import eligible, text_matches
+from motiondiffuse_ros.selection import TextMatch, eligible, leading
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -71,6 +72,8 @@ class PlannerConfig:
         apart_above: Noise level above which texts on different parts are denoised apart.
         planted_below: Noise level below which feet in contact hold the root.
         candidates: Motions to choose from, by match with the texts and by plausibility.
+        survivors: How many of them are sampled to the end: those that will match the texts best,
+            as far as can be told early (`SamplerConfig.thinned_below`).
         control_rate: Rate of the trajectory, Hz.
         accelerations: Whether trajectories have them.
         settle: Whether a trajectory whose last pose could not be held comes to stand after it.
@@ -93,6 +96,7 @@ class PlannerConfig:
     apart_above: float = SamplerConfig.apart_above
     planted_below: float = SamplerConfig.planted_below
     candidates: int = 4
+    survivors: int = 2
     control_rate: float = 50.0
     accelerations: bool = False
     settle: bool = True
@@ -107,6 +111,10 @@ class PlannerConfig:
         if not 1 <= self.candidates <= LIMITS.max_candidates:
             raise RequestError(
                 f"candidates must be from 1 to {LIMITS.max_candidates}, got {self.candidates}"
+            )
+        if not 1 <= self.survivors <= LIMITS.max_candidates:
+            raise RequestError(
+                f"survivors must be from 1 to {LIMITS.max_candidates}, got {self.survivors}"
             )
         if not 1.0 <= self.control_rate <= 1000.0:
             raise RequestError(f"control_rate must be from 1 to 1000 Hz, got {self.control_rate}")
@@ -189,7 +197,7 @@ class Plan:
         report: Physics verdict on the motion.
         timings_s: Seconds for text, sampling, physics, retargeting and total.
         candidate: Index of the chosen candidate.
-        text_match: How well it matches the texts (`selection.text_matches`), -2 to 2; None where
+        text_match: How well it matches the texts (`selection.TextMatch`), -2 to 2; None where
             that cannot be judged.
         scheduler: Sampler that was used.
         origin: What it was made from.
@@ -355,15 +363,16 @@ class Planner:
         )
         watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
-        motions = self._sample(request, start, texts, frames, watch)
+        match = None if self._critic is None else TextMatch(self._critic, texts)
+        candidates = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given
-        chosen, match, motion, report = self._choose(motions, texts, request, robot, watch, repairs)
+        best = self._choose(candidates, match, request, robot, watch, repairs)
         trajectory = watch.run(
             "retargeting",
             lambda: build_trajectory(
                 robot,
-                motion,
+                best.motion,
                 config.control_rate,
                 start.state,
                 accelerations=config.accelerations,
@@ -378,12 +387,12 @@ class Planner:
             seed=request.seed,
             weights_sha256=self.weights_sha256,
             robot=robot.name,
-            motion=motion,
+            motion=best.motion,
             trajectory=trajectory,
-            report=report,
+            report=best.report,
             timings_s=watch.timings(),
-            candidate=chosen,
-            text_match=match,
+            candidate=best.candidate,
+            text_match=best.text_match,
             scheduler=config.scheduler,
             origin=origin,
         )
@@ -394,8 +403,10 @@ class Planner:
         start: Start,
         texts: tuple[TimedText, ...],
         frames: int,
+        match: TextMatch | None,
         watch: _Stages,
-    ) -> tuple[Motion, ...]:
+    ) -> dict[int, Motion]:
+        """Return the motions of the candidates that were sampled to the end."""
         assert request.guidance_scale is not None
         assert request.steps is not None
         assert request.candidates is not None
@@ -411,6 +422,11 @@ class Planner:
             lead_in.seam if lead_in else None,
         )
         keep_to = constraints(pipeline, kept, points, before + frames)
+
+        def best(candidates: Sequence[Array]) -> list[int]:
+            assert match is not None
+            return leading(match([x[before:] for x in candidates]), self.config.survivors)
+
         watch.enter("text")
         samples = pipeline(
             tuple(_later(text, before) for text in texts),
@@ -420,12 +436,14 @@ class Planner:
             seed=request.seed,
             blend_frames=round(LIMITS.blend * pipeline.fps),
             constraints=keep_to,
+            choose=None if match is None or request.candidates <= self.config.survivors else best,
             on_step=lambda done, total: watch.advance("sampling", done / total),
             cancelled=watch.cancelled,
         )
         watch.record("text", samples.text_seconds)
         watch.record("sampling", samples.sampling_seconds)
-        return tuple(self._finished(m, start, before, edited) for m in samples.motions)
+        finished = (self._finished(m, start, before, edited) for m in samples.motions)
+        return dict(zip(samples.candidates, finished, strict=True))
 
     def _given(
         self, request: MotionRequest, start: Start, frames: int
@@ -450,14 +468,13 @@ class Planner:
 
     def _choose(
         self,
-        motions: tuple[Motion, ...],
-        texts: tuple[TimedText, ...],
+        candidates: dict[int, Motion],
+        match: TextMatch | None,
         request: MotionRequest,
         robot: Robot,
         watch: _Stages,
         repairs: bool,
-    ) -> tuple[int, float | None, Motion, Report]:
-        """Return the best candidate, its match with the texts, its motion and full report."""
+    ) -> _Chosen:
 
         def assessed(motion: Motion) -> Report:
             return assess(
@@ -468,9 +485,10 @@ class Planner:
                 cancelled=watch.cancelled,
             )
 
-        def judge() -> tuple[int, float | None, Motion, Report]:
-            matches = self._matches(motions, texts)
-            able = {i: motions[i] for i in eligible(matches)}
+        def judge() -> _Chosen:
+            matches = dict(zip(candidates, self._matches(match, candidates.values()), strict=True))
+            names = list(candidates)
+            able = {names[i]: candidates[names[i]] for i in eligible(list(matches.values()))}
             reports: list[Report] = []
 
             def judged(motion: Motion) -> Report:
@@ -498,16 +516,14 @@ class Planner:
             if self.config.track:
                 report = with_tracking(report, motion, cancelled=watch.cancelled)
             watch.advance("physics", 1.0, report.verdict)
-            return best, matches[best], motion, report
+            return _Chosen(best, matches[best], motion, report)
 
         return watch.run("physics", judge)
 
-    def _matches(
-        self, motions: tuple[Motion, ...], texts: tuple[TimedText, ...]
-    ) -> list[float | None]:
-        if self._critic is None:
+    def _matches(self, match: TextMatch | None, motions: Collection[Motion]) -> list[float | None]:
+        if match is None:
             return [None] * len(motions)
-        return text_matches(self._critic, self._pipeline.representation, motions, texts)
+        return match([self._pipeline.representation.encode(motion) for motion in motions])
 
 
 def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...], int]:
@@ -529,6 +545,16 @@ def _later(text: TimedText, frames: int) -> TimedText:
     """Return a text moved on; one at the start also covers what is put before it."""
     start = text.start + frames if text.start > 0 else 0
     return replace(text, start=start, stop=text.stop + frames)
+
+
+@dataclass(frozen=True, eq=False)
+class _Chosen:
+    """The candidate that was chosen, how well it matches the texts, its motion and full report."""
+
+    candidate: int
+    text_match: float | None
+    motion: Motion
+    report: Report
 
 
 class _Stages:

@@ -37,9 +37,13 @@ _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
 _STEPS = 4
-_KNEELING = 0.2  # m, knee over the floor
+_KNEELING, _KNEELING_UPRIGHT = 0.2, np.cos(np.radians(50.0))  # m, knee over the floor
 _FULL_TURN = np.radians((300.0, 430.0))
 _LEAP, _KNEE_UP = 0.4, 0.2  # m ahead, m of a knee below its hip
+_HEEL_UP, _TIPTOEING = 0.1, 0.6  # m over the toes, share of the window
+_CLAP, _PARTING, _CLAPS = 0.2, 0.12, 3  # m between the wrists, m further between claps, times
+_LEGS = (0.35, 0.5)  # m between the ankles: together, apart
+_SEAT, _SEAT_BEHIND, _SITTING = (0.3, 0.75), 0.15, 0.7  # m, m behind the heels, s
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,9 @@ def findings(features: Array, representation: Representation, fps: float) -> lis
     way = Travel.of(features, representation, fps)
     found: list[Finding] = []
     if way.path < _ON_THE_SPOT:
-        found += _postures(body)
+        found += _postures(body, way, fps)
+        if body.upright.min() > _UPRIGHT and _claps(body):
+            found.append(Finding("claps"))
     if way.speed < _SLOW:
         found += _legs(body, fps)
     if way.speed < 0.8 * _RUN:
@@ -78,8 +84,13 @@ def findings(features: Array, representation: Representation, fps: float) -> lis
     if body.upright.min() > _UPRIGHT:
         feet = features[:, groups["contacts"]] > 0.5
         found += _travelling(way, _walks(feet), feet)
-        if Finding("on the spot") in found and _marches(body):
-            found.append(Finding("march"))
+        if _marches(body):
+            if Finding("on the spot") in found:
+                found.append(Finding("march"))
+            elif way.straight > 0 and _MOVING < way.speed < 0.8 * _RUN:
+                found.append(Finding("march ahead"))
+        if way.straight > 0 and _MOVING < way.speed < _BRISK and _tiptoes(body):
+            found.append(Finding("tiptoe"))
         found += _hands(body, fps)
         velocities = features[:, groups["velocities"]].reshape(len(features), -1, 3)
         if np.linalg.norm(velocities, axis=-1).mean(axis=1).max() < _STILL:
@@ -185,7 +196,7 @@ def _feet(contacts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.stack([contacts[:, :half].any(axis=1), contacts[:, half:].any(axis=1)], axis=1)
 
 
-def _postures(body: _Body) -> list[Finding]:
+def _postures(body: _Body, way: Travel, fps: float) -> list[Finding]:
     """Return what the body does with its height: bows, goes down, reaches down."""
     neck = body.place("neck")
     pitch = np.arctan2(neck[:, 2], neck[:, 1] - body.height)
@@ -198,11 +209,30 @@ def _postures(body: _Body) -> list[Finding]:
         found.append(Finding("bow"))
     from_standing = pitch[0] < _ERECT and body.height[0] > body.height.max() - _SUNK
     if from_standing and legs > _DOWN:
-        knees = np.minimum(body.level("left_knee"), body.level("right_knee")).min()
-        found.append(Finding("on the knees" if knees < _KNEELING else "down low"))
+        found += _down(body, way, fps)
     if from_standing and lowest < _REACHING - 0.1:
         found.append(Finding("reach down"))
     return found
+
+
+def _down(body: _Body, way: Travel, fps: float) -> list[Finding]:
+    """Return how a body goes down that stood at first: on the knees, to a seat or over its feet."""
+    knees = np.minimum(body.level("left_knee"), body.level("right_knee"))
+    if knees.min() < _KNEELING:
+        kneels = (knees < _KNEELING) & (body.upright > _KNEELING_UPRIGHT)
+        turns = abs(way.turned) > _TURN  # spins and falls pass over the knees
+        return [Finding("on the knees")] if kneels.mean() > 0.05 and not turns else []
+    if _sits(body, fps):
+        return [Finding("sit down")]
+    toes = np.maximum(body.level("left_foot"), body.level("right_foot"))
+    return [Finding("down low")] if toes.max() < _FOOT_DOWN else []
+
+
+def _sits(body: _Body, fps: float) -> bool:
+    """Whether the pelvis comes to rest low and behind both heels: only a seat can hold it there."""
+    ahead = np.minimum(body.place("left_ankle")[:, 2], body.place("right_ankle")[:, 2])
+    seated = (body.height > _SEAT[0]) & (body.height < _SEAT[1]) & (ahead > _SEAT_BEHIND)
+    return sum(stop - start for start, stop in runs(seated)) > _SITTING * fps
 
 
 def _legs(body: _Body, fps: float) -> list[Finding]:
@@ -234,11 +264,36 @@ def _jumps(body: _Body, way: Travel, fps: float) -> list[Finding]:
             upright = body.upright.min() > _UPRIGHT
             return [Finding("hops", side)] if upright and times > 1 else []
     found = [Finding("jump")]
+    if way.path < 2.0 * _ON_THE_SPOT and _jumping_jacks(body):
+        found.append(Finding("jumping jacks"))
     if times > 2:
         found.append(Finding("jumps"))
     if way.straight > 0 and way.ahead > _LEAP * times:
         found.append(Finding("jump ahead"))
     return found
+
+
+def _jumping_jacks(body: _Body) -> bool:
+    """Whether arms go up while legs go apart, and down while they come together, twice or more."""
+    sides = ("left", "right")
+    wrists = [body.level(f"{side}_wrist") for side in sides]
+    up = np.min(wrists, axis=0) > body.level("head")
+    down = np.max(wrists, axis=0) < body.level("left_shoulder")
+    apart = np.linalg.norm(body.place("left_ankle") - body.place("right_ankle"), axis=-1)
+    opened = sum(apart[start:stop].max() > _LEGS[1] for start, stop in runs(up))
+    closed = sum(apart[start:stop].min() < _LEGS[0] for start, stop in runs(down))
+    return min(opened, closed) > 1
+
+
+def _claps(body: _Body) -> bool:
+    """Whether the hands meet in front of the chest and part, again and again."""
+    left, right = body.place("left_wrist"), body.place("right_wrist")
+    apart = np.linalg.norm(left - right, axis=-1)
+    low, high = body.height + 0.1, body.level("head")
+    chest = np.all([(w[:, 1] > low) & (w[:, 1] < high) for w in (left, right)], axis=0)
+    meet = find_peaks(-apart, height=-_CLAP, prominence=_PARTING)[0]
+    level = np.abs(left[:, 1] - right[:, 1]) < _CLAP
+    return int((chest & level)[meet].sum()) >= _CLAPS
 
 
 def _marches(body: _Body) -> bool:
@@ -248,6 +303,15 @@ def _marches(body: _Body) -> bool:
         below = body.level(f"{side}_hip") - body.level(f"{side}_knee")
         lifts.append(len(runs(below < _KNEE_UP)))
     return min(lifts) > 1
+
+
+def _tiptoes(body: _Body) -> bool:
+    """Whether the heel over the lower foot is up most of the time, however high the floor."""
+    toes = np.stack([body.level("left_foot"), body.level("right_foot")])
+    heels = np.stack([body.level("left_ankle"), body.level("right_ankle")])
+    lower = toes.argmin(axis=0)[None]
+    up = np.take_along_axis(heels - toes, lower, axis=0)[0]
+    return bool((up > _HEEL_UP).mean() > _TIPTOEING)
 
 
 def _hands(body: _Body, fps: float) -> list[Finding]:

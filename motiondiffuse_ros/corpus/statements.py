@@ -104,6 +104,16 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person steps in place and lifts the knees high",
         "a person marches in place with high knees",
     ),
+    "march ahead": (
+        "a person marches ahead with high knees",
+        "a person walks on and lifts the knees high",
+        "a person marches along with raised knees",
+    ),
+    "tiptoe": (
+        "a person walks forward on tiptoe",
+        "a person walks on the toes with the heels up",
+        "a person goes ahead on the balls of the feet",
+    ),
     "run": (
         "a person runs forward",
         "a person runs straight ahead",
@@ -149,6 +159,11 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person crouches down low",
         "a person squats with the knees bent",
     ),
+    "sit down": (
+        "a person sits down on a seat",
+        "a person lowers the body onto a chair",
+        "a person goes from standing to sitting",
+    ),
     "on the knees": ("a person goes down on the knees", "a person kneels down"),
     "reach down": (
         "a person reaches down to the floor with a hand",
@@ -161,6 +176,16 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person leaps up",
     ),
     "jumps": ("a person jumps again and again", "a person keeps jumping"),
+    "jumping jacks": (
+        "a person performs jumping jacks",
+        "a person does star jumps with arms and legs",
+        "a person jumps with arms and legs apart and together again",
+    ),
+    "claps": (
+        "a person claps with both hands",
+        "a person brings the hands together again and again",
+        "a person applauds",
+    ),
     "jump ahead": ("a person jumps forward", "a person leaps forward with both feet"),
     "hops": (
         "a person hops on the left leg",

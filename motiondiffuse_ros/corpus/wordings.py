@@ -125,6 +125,16 @@ STATED: dict[str, tuple[str, ...]] = {
         "(lift|raise|pull up) your knees (high|up) (one after the other|by turns|in turn)",
         "(march|step|tread) with (high knees|raised knees|knees up)",
     ),
+    "march ahead": (
+        "march (ahead|forward|along|around|on|onward) (like a soldier|with high knees|in step|)",
+        "(walk|step|stride) (ahead|forward|along) (with high knees|lifting your knees high)",
+        "(goose step|parade|stomp along|walk like a soldier on parade)",
+    ),
+    "tiptoe": (
+        "tiptoe (ahead|along|around|across the room|quietly|past somebody|onward)",
+        "(walk|go|sneak|move|step) (on tiptoe|on your toes|on tiptoes|with raised heels)",
+        "(walk|go|step) (forward|ahead|along) (on tiptoe|on your toes|on the front of your feet)",
+    ),
     "run": (
         "(run|jog|dash|race|rush) (forward|forwards|ahead|onward|straight on|straight)",
         "(run|jog) (across the room|down the street|along the track|to the other side|past)",
@@ -182,6 +192,12 @@ STATED: dict[str, tuple[str, ...]] = {
         "(bend|flex) your knees (deeply|far|and get low|and lower your body)",
         "(get|go|hunker|drop) down (low|into a squat|into a crouch)",
     ),
+    "sit down": (
+        "(sit|sit down|be seated|take a seat) (on a chair|on a stool|on a bench|on a box)",
+        "(sink|settle|lower yourself) (into a seat|onto a chair|onto a stool)",
+        "(have|find) a seat",
+        "sit (for a rest|and rest|there)",
+    ),
     "on the knees": (
         "kneel (on the floor|on the ground|on both knees|)",
         "(get|drop|sink|fall|go) (to your knees|down on your knees|onto your knees)",
@@ -205,6 +221,16 @@ STATED: dict[str, tuple[str, ...]] = {
         "keep (hopping|bouncing|leaping|jumping up and down)",
         "(do|make) (several|a few|many|some) (jumps|hops|leaps)",
         "skip rope",
+    ),
+    "jumping jacks": (
+        "(perform|exercise with|make|keep doing) (jumping jacks|star jumps|side straddle hops)",
+        "(do|make) (star jumps|some jumping jacks|a set of jumping jacks|a few jumping jacks)",
+        "(jump|hop) while (spreading and closing|swinging out) your arms and legs",
+    ),
+    "claps": (
+        "clap (with both hands|loudly|along|to the rhythm|for somebody|several times|)",
+        "(applaud|applaud somebody|give a round of applause|give a big hand)",
+        "(strike|beat|bring|slap) your (hands|palms) together (repeatedly|again and again|)",
     ),
     "jump ahead": (
         "(jump|leap|hop|spring) (forward|ahead|to the front|forwards|far|over something)",

@@ -64,6 +64,11 @@ class Imagination:
             for clean, noise in zip(self._clean, self._noise, strict=True)
         ]
 
+    def keep(self, rows: Sequence[int]) -> None:
+        """Go on with some candidates."""
+        for values in (self._clean, self._noise):
+            values[:] = [None if x is None else x[list(rows)] for x in values]
+
     def learn(
         self,
         step: int,

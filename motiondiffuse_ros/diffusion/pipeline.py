@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,7 @@ from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
 from motiondiffuse_ros.motion.planted_feet import PlantedFeet
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
+from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
 
 EASE = 0.6
@@ -39,12 +41,14 @@ class Samples:
     """What a pipeline returns.
 
     Attributes:
-        motions: One per candidate; starts over the origin, facing +x.
+        motions: One per candidate that went on; starts over the origin, facing +x.
+        candidates: Which those are, rising.
         text_seconds: Time spent on the text encoder, s.
         sampling_seconds: Time spent on denoising, s.
     """
 
     motions: tuple[Motion, ...]
+    candidates: tuple[int, ...]
     text_seconds: float
     sampling_seconds: float
 
@@ -170,10 +174,24 @@ class MotionPipeline:
         seed: int,
         blend_frames: int,
         constraints: Sequence[Constraint] = (),
+        choose: Callable[[Sequence[Array]], Sequence[int]] | None = None,
         on_step: Callable[[int, int], None] | None = None,
         cancelled: Callable[[], bool] | None = None,
     ) -> Samples:
-        """Sample candidates of one timeline; see `compose` and `sample`."""
+        """Sample candidates of one timeline; see `compose` and `sample`.
+
+        `choose` is given the features [T, D], not normalised, that each candidate is predicted to
+        have, and returns which go on.
+        """
+        kept: Sequence[int] = range(candidates)
+
+        def chosen(
+            choose: Callable[[Sequence[Array]], Sequence[int]], x: torch.Tensor
+        ) -> list[int]:
+            nonlocal kept
+            kept = choose(list(self._checkpoint.statistics.denormalise(x.cpu().numpy())))
+            return list(kept)
+
         denoiser = self._checkpoint.denoiser
         windows = compose(
             texts,
@@ -197,11 +215,12 @@ class MotionPipeline:
             seed=seed,
             constraints=constraints,
             planted=self._planted(),
+            choose=partial(chosen, choose) if choose else None,
             on_step=on_step,
             cancelled=cancelled,
         )
         motions = tuple(map(self._decode, features))
-        return Samples(motions, encoded - began, time.perf_counter() - encoded)
+        return Samples(motions, tuple(kept), encoded - began, time.perf_counter() - encoded)
 
     def batch(
         self,

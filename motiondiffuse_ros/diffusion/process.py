@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
@@ -62,6 +63,13 @@ def denoising_steps(count: int, spacing: float, train_steps: int) -> list[int]:
         before = steps[-1] if steps else train_steps
         steps.append(max(min(step, before - 1), count - 1 - i))
     return steps
+
+
+def keep_rows(scheduler: Scheduler, rows: Sequence[int]) -> None:
+    """Let a scheduler that is under way go on with some rows of its batch."""
+    if isinstance(scheduler, DPMSolverMultistepScheduler):
+        outputs = scheduler.model_outputs
+        scheduler.model_outputs = [None if x is None else x[list(rows)] for x in outputs]
 
 
 def to_clean(kind: str, output: Tensor, noisy: Tensor, alpha: Tensor) -> Tensor:

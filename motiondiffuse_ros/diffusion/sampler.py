@@ -18,13 +18,20 @@ from motiondiffuse_ros.diffusion.process import (
     SCHEDULERS,
     denoising_steps,
     from_clean,
+    keep_rows,
     make_scheduler,
     to_clean,
 )
 from motiondiffuse_ros.diffusion.windowed_prediction import BATCH_ROWS, WindowedPrediction
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
-_FRACTIONS = ("part_correction", "time_correction", "apart_above", "planted_below")
+_FRACTIONS = (
+    *("part_correction", "time_correction", "apart_above", "planted_below"),
+    "thinned_below",
+)
+
+Choice = Callable[[Tensor], Sequence[int]]
+"""Which candidates go on, of what each is predicted to become [C, T, D], normalised."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +52,8 @@ class SamplerConfig:
             parts are denoised apart, each imagining the rest of the body; 1 is never, 0 always.
         planted_below: Noise level, as part of the training steps, below which feet in contact are
             held in their places (`motion.planted_feet`); 0 is never.
+        thinned_below: Noise level, as part of the training steps, below which only chosen
+            candidates go on: what a motion does is decided while there is almost nothing but noise.
         precision: Arithmetic of the denoiser, one of `PRECISIONS`.
     """
 
@@ -57,6 +66,7 @@ class SamplerConfig:
     time_correction: float = 0.5
     apart_above: float = 0.0
     planted_below: float = 0.5
+    thinned_below: float = 0.95
     precision: str = "auto"
 
     def validate(self) -> None:
@@ -98,6 +108,7 @@ def sample(
     seed: int,
     constraints: Sequence[Constraint] = (),
     planted: Constraint | None = None,
+    choose: Choice | None = None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
@@ -114,11 +125,13 @@ def sample(
         seed: Of all noise.
         constraints: What the motion must keep to, met at every step and in the result.
         planted: What is imposed below `planted_below`, before the constraints.
+        choose: Which candidates go on below `thinned_below`; all do where they are so long that
+            they are sampled one after the other.
         on_step: Called with (steps done, steps in all).
         cancelled: Asked before each step.
 
     Returns:
-        [candidates, frames, D] float32.
+        [candidates that went on, frames, D] float32.
 
     Raises:
         Cancelled: If `cancelled` said so.
@@ -147,7 +160,12 @@ def sample(
                 on_step(len(sampled) * total + done, len(groups) * total)
 
         sampled.append(
-            _denoise(predict, x, denoiser, config, generator, constraints, planted, told, cancelled)
+            _denoise(
+                *(predict, x, denoiser, config, generator, constraints, planted),
+                choose=_told(choose, predict) if choose and len(groups) == 1 else None,
+                on_step=told,
+                cancelled=cancelled,
+            )
         )
     return torch.cat(sampled)
 
@@ -193,6 +211,17 @@ def sample_batch(
     return _denoise(predict, x, denoiser, config, generator, (), planted)
 
 
+def _told(choose: Choice, predict: WindowedPrediction) -> Choice:
+    """Return a choice that also tells the prediction who goes on."""
+
+    def chosen(clean: Tensor) -> Sequence[int]:
+        rows = choose(clean)
+        predict.keep(rows)
+        return rows
+
+    return chosen
+
+
 def _noise(shape: tuple[int, int, int], generator: torch.Generator) -> Tensor:
     """Return what sampling starts from: noise [B, T, D] whose mean over time is zero.
 
@@ -210,6 +239,8 @@ def _denoise(
     generator: torch.Generator,
     constraints: Sequence[Constraint],
     planted: Constraint | None,
+    *,
+    choose: Choice | None = None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
@@ -223,10 +254,14 @@ def _denoise(
         if cancelled is not None and cancelled():
             raise Cancelled("canceled while sampling")
         output = predict(x, int(step))
-        imposed = late if step < config.planted_below * denoiser.config.train_steps else constraints
+        alpha, kind = scheduler.alphas_cumprod[int(step)].to(x), denoiser.config.prediction_type
+        noise = step / denoiser.config.train_steps
+        if choose is not None and noise < config.thinned_below:
+            rows = list(choose(to_clean(kind, output, x, alpha)))
+            x, output, choose = x[rows], output[rows], None
+            keep_rows(scheduler, rows)
+        imposed = late if noise < config.planted_below else constraints
         if imposed:
-            alpha = scheduler.alphas_cumprod[int(step)].to(x)
-            kind = denoiser.config.prediction_type
             clean = apply(imposed, to_clean(kind, output, x, alpha))
             output = from_clean(kind, clean, x, alpha)
         x = scheduler.step(output, step, x, generator=generator).prev_sample  # type: ignore[arg-type, union-attr]

@@ -69,17 +69,26 @@ class WindowedPrediction:
             imagination: Of the windows, where they are denoised apart at first; λ₁ then counts
                 from where they no longer are.
         """
-        self._predict, self._windows, self._candidates = predict, windows, candidates
+        self._predict, self._windows = predict, windows
         self._imagination = imagination
         self._weights = [
             torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(device)
             for w in windows
         ]
-        rows = [(w, c) for w in range(len(windows)) for c in range(candidates)]
+        self._candidates, self._batches = candidates, self._laid_out(candidates)
+        self._pulls = _pulls(windows, part_correction, time_correction, device)
+
+    def keep(self, rows: Sequence[int]) -> None:
+        """Go on with some candidates."""
+        self._candidates, self._batches = len(rows), self._laid_out(len(rows))
+        if self._imagination is not None:
+            self._imagination.keep(rows)
+
+    def _laid_out(self, candidates: int) -> list[list[tuple[int, int]]]:
+        rows = [(w, c) for w in range(len(self._windows)) for c in range(candidates)]
         # windows of like length share a batch
         rows.sort(key=lambda row: len(self._weights[row[0]]))
-        self._batches = [rows[i : i + BATCH_ROWS] for i in range(0, len(rows), BATCH_ROWS)]
-        self._pulls = _pulls(windows, part_correction, time_correction, device)
+        return [rows[i : i + BATCH_ROWS] for i in range(0, len(rows), BATCH_ROWS)]
 
     def __call__(self, x: Tensor, step: int) -> Tensor:
         """Return the prediction [C, T, D] for noisy features x [C, T, D]."""

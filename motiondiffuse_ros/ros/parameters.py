@@ -123,6 +123,12 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         "motions sampled by requests that set no number",
         (1, LIMITS.max_candidates),
     ),
+    "survivors": ParameterSpec(
+        _DEFAULT.survivors,
+        "candidates that are sampled to the end, by match with the texts early on",
+        (1, LIMITS.max_candidates),
+        at_configure=True,
+    ),
     "seed": ParameterSpec(-1, "of requests that set none; -1 = drawn", (-1, 2**63 - 1)),
     "default_seconds": ParameterSpec(
         LIMITS.default_seconds,
@@ -146,6 +152,7 @@ def planner_config(parameters: Parameters) -> PlannerConfig:
         apart_above=parameters["apart_above"],
         planted_below=parameters["planted_below"],
         candidates=parameters["candidates"],
+        survivors=parameters["survivors"],
         control_rate=parameters["control_rate"],
         accelerations=parameters["accelerations"],
         settle=parameters["settle"],

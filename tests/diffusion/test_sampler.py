@@ -19,7 +19,7 @@ def _conditioning(denoiser, texts):
 
 
 def _sample(denoiser, *, windows=None, frames=40, candidates=2, seed=0, steps=4, **settings):
-    names = ("on_step", "cancelled", "constraints")
+    names = ("on_step", "cancelled", "constraints", "choose")
     callbacks = {k: settings.pop(k) for k in names if k in settings}
     dim = denoiser.config.feature_dim
     windows = windows or [Window("a", 0, np.ones((frames, dim)))]
@@ -90,6 +90,26 @@ def test_candidates_of_a_long_timeline_come_one_after_the_other(denoiser):
     assert seen == [(step, 12) for step in range(1, 13)]
     assert motions.shape == (3, 200, dim)
     assert all(not torch.equal(motions[a], motions[b]) for a, b in ((0, 1), (1, 2), (0, 2)))
+
+
+@pytest.mark.parametrize("scheduler", ["ddim", "dpm-solver++"])
+@pytest.mark.parametrize("parts", [False, True])
+def test_candidates_that_go_on_become_what_they_would_have_become(denoiser, scheduler, parts):
+    dim = denoiser.config.feature_dim
+    upper = np.zeros((40, dim))
+    upper[:, : dim // 2] = 1.0
+    windows = [Window("a", 0, upper), Window("b", 0, 1.0 - upper)] if parts else None
+    seen = []
+
+    def last_two(clean):
+        seen.append(clean.clone())
+        return [1, 2]
+
+    settings = {"scheduler": scheduler, "windows": windows, "candidates": 3, "steps": 6}
+    every = _sample(denoiser, **settings)
+    some = _sample(denoiser, choose=last_two, **settings)
+    torch.testing.assert_close(some, every[1:], atol=1e-4, rtol=1e-4)
+    assert [x.shape for x in seen] == [(3, 40, dim)]
 
 
 def test_values_that_are_not_finite_are_an_error(denoiser):
