@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -185,12 +184,11 @@ class MotionPipeline:
         """
         kept: Sequence[int] = range(candidates)
 
-        def chosen(
-            choose: Callable[[Sequence[Array]], Sequence[int]], x: torch.Tensor
-        ) -> list[int]:
+        def chosen(clean: torch.Tensor) -> Sequence[int]:
             nonlocal kept
-            kept = choose(list(self._checkpoint.statistics.denormalise(x.cpu().numpy())))
-            return list(kept)
+            assert choose is not None
+            kept = choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
+            return kept
 
         denoiser = self._checkpoint.denoiser
         windows = compose(
@@ -215,7 +213,7 @@ class MotionPipeline:
             seed=seed,
             constraints=constraints,
             planted=self._planted(),
-            choose=partial(chosen, choose) if choose else None,
+            choose=chosen if choose else None,
             on_step=on_step,
             cancelled=cancelled,
         )
