@@ -60,8 +60,8 @@ class SamplerConfig:
     scheduler: str = "dpm-solver++"
     steps: int = 12
     spacing: float = 2.5
-    guidance_scale: float = 2.5
-    guidance_interval: tuple[float, float] = (0.6, 1.0)
+    guidance_scale: float = 4.0
+    guidance_interval: tuple[float, float] = (0.8, 1.0)
     part_correction: float = 0.0
     time_correction: float = 0.5
     apart_above: float = 0.0
