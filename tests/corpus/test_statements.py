@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from synthetic import moved, standing
@@ -12,6 +14,7 @@ from motiondiffuse_ros.corpus.statements import (
     statements_of,
 )
 from motiondiffuse_ros.motion.features import PoseState
+from motiondiffuse_ros.motion.skeleton import CANONICAL
 
 STATE = PoseState()
 FPS = 20.0
@@ -92,3 +95,83 @@ def test_a_sentence_is_also_said_of_others_and_to_somebody():
     assert {"a woman walks backward", "walk backward", "step back"} <= set(all_statements())
     assert "raise both hands and wave with them" in all_statements()
     assert "hold your left hand above your head" in all_statements()
+
+
+def _placed(features, joint, x=None, y=None, z=None):
+    """Put a joint somewhere in the heading frame: x left, y up, z ahead."""
+    first = STATE.groups()["positions"].start + 3 * (CANONICAL.index(joint) - 1)
+    for axis, values in enumerate((x, y, z)):
+        if values is not None:
+            features[:, first + axis] = values
+
+
+def _claps(height):
+    features = STATE.encode(standing(81))
+    apart = 0.25 + 0.2 * np.cos(2 * np.pi * np.arange(81) / 20)
+    for side, sign in (("left", 1), ("right", -1)):
+        _placed(features, f"{side}_wrist", x=0.5 * sign * apart, y=height, z=0.3)
+    return features
+
+
+def test_hands_that_meet_before_the_chest_again_and_again_clap():
+    assert "claps" in _statements(_claps(1.2))
+    assert "claps" not in _statements(_claps(1.9))
+
+
+@pytest.mark.parametrize(("ahead", "kind"), [(0.3, "sit down"), (0.0, "down low")])
+def test_what_rests_behind_its_heels_sits_and_what_is_over_them_crouches(ahead, kind):
+    features = STATE.encode(standing(81))
+    features[20:, STATE.groups()["root_height"]] = 0.5
+    for side in ("left", "right"):
+        _placed(features[20:], f"{side}_knee", y=0.45)
+        _placed(features[20:], f"{side}_ankle", z=ahead)
+    assert {"sit down", "down low"} & set(_statements(features)) == {kind}
+
+
+def _slow_walk(real_paths):
+    motion = load_motion(next(p for p in real_paths if p.stem == "02_01")).resample(2 * FPS)
+    return STATE.encode(replace(motion, fps=FPS))
+
+
+def test_a_slow_walk_with_the_heels_up_is_on_tiptoe(real_paths):
+    features = _slow_walk(real_paths)
+    assert "tiptoe" not in _statements(features)
+    for side in ("left", "right"):
+        first = STATE.groups()["positions"].start
+        toe = features[:, first + 3 * (CANONICAL.index(f"{side}_foot") - 1) + 1]
+        _placed(features, f"{side}_ankle", y=toe + 0.15)
+    assert "tiptoe" in _statements(features)
+
+
+def test_a_walk_with_the_knees_as_high_as_the_hips_is_a_march(real_paths):
+    features = _slow_walk(real_paths)
+    assert "march ahead" not in _statements(features)
+    frames = np.arange(len(features))
+    for side, phase in (("left", 0), ("right", 10)):
+        lifted = (frames + phase) % 20 < 6
+        rows = features[lifted]
+        _placed(rows, f"{side}_knee", y=0.85)
+        features[lifted] = rows
+    assert "march ahead" in _statements(features)
+
+
+def _bounces(wrist, spread):
+    """Jumps once a second, with wrists and ankles that go out and back on the way."""
+    features = STATE.encode(standing(81))
+    times = np.arange(81) / FPS % 1.0
+    flight = np.maximum(2.5 * times - 4.9 * times**2, 0.0)
+    features[:, STATE.groups()["root_height"]] += flight[:, None]
+    out = np.arange(81) // 20 % 2 == 1
+    for side, sign in (("left", 1), ("right", -1)):
+        _placed(features, f"{side}_foot", y=0.02 + flight)
+        _placed(features, f"{side}_ankle", x=sign * np.where(out, spread, 0.1))
+        _placed(features, f"{side}_wrist", y=np.where(out, wrist, 0.9))
+    return features
+
+
+def test_jumps_with_arms_and_legs_out_and_in_again_are_jumping_jacks():
+    assert {"jumps", "jumping jacks"} <= set(_statements(_bounces(2.0, 0.4)))
+    for other in (_bounces(0.9, 0.4), _bounces(2.0, 0.1)):
+        stated = set(_statements(other))
+        assert "jumps" in stated
+        assert "jumping jacks" not in stated
