@@ -20,11 +20,11 @@ from motiondiffuse_ros.diffusion.constraints import (
     OnPlainFeatures,
 )
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
+from motiondiffuse_ros.diffusion.sampler import Planting, SamplerConfig, sample, sample_batch
 from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
-from motiondiffuse_ros.motion.planted_feet import PlantedFeet
+from motiondiffuse_ros.motion.planted_feet import WHILE_DENOISING, PlantedFeet
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder, load_text_encoder
@@ -205,12 +205,13 @@ class MotionPipeline:
         features = sample(
             denoiser,
             windows,
-            every.expand(torch.tensor([distinct.index(w.text) for w in windows])),
+            every.expand(torch.arange(len(distinct))),
             every.expand(torch.tensor([len(distinct)])),
             config,
             frames=frames,
             candidates=candidates,
             seed=seed,
+            text_of=[distinct.index(w.text) for w in windows],
             constraints=constraints,
             planted=self._planted(),
             choose=chosen if choose else None,
@@ -258,10 +259,15 @@ class MotionPipeline:
                 on_progress(len(motions), len(texts))
         return [motions[i] for i in range(len(texts))]
 
-    def _planted(self) -> Constraint | None:
+    def _planted(self) -> Planting | None:
         if not isinstance(self._representation, PoseState):
             return None
-        return OnPlainFeatures(PlantedFeet(self.fps), self._checkpoint.statistics)
+        return Planting(
+            *(
+                OnPlainFeatures(PlantedFeet(self.fps, weights), self._checkpoint.statistics)
+                for weights in (WHILE_DENOISING, None)
+            )
+        )
 
     def _condition(self, texts: Sequence[str]) -> Conditioning:
         denoiser = self._checkpoint.denoiser

@@ -35,6 +35,19 @@ Choice = Callable[[Tensor], Sequence[int]]
 
 
 @dataclass(frozen=True)
+class Planting:
+    """How feet are held in their places.
+
+    Attributes:
+        denoising: In clean predictions, that may still become something else.
+        result: In what is returned.
+    """
+
+    denoising: Constraint
+    result: Constraint
+
+
+@dataclass(frozen=True)
 class SamplerConfig:
     """How to sample.
 
@@ -106,8 +119,9 @@ def sample(
     frames: int,
     candidates: int,
     seed: int,
+    text_of: Sequence[int] | None = None,
     constraints: Sequence[Constraint] = (),
-    planted: Constraint | None = None,
+    planted: Planting | None = None,
     choose: Choice | None = None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
@@ -117,12 +131,13 @@ def sample(
     Args:
         denoiser: In evaluation mode.
         windows: Composed timeline; their weights sum to one.
-        conditioning: A row for each window.
+        conditioning: A row for each text.
         unconditional: One row, of the empty text.
         config: Scheduler and guidance.
         frames: Length of the motion.
         candidates: Independent samples.
         seed: Of all noise.
+        text_of: Which text each window has; one each if None.
         constraints: What the motion must keep to, met at every step and in the result.
         planted: What is imposed below `planted_below`, before the constraints.
         choose: Which candidates go on below `thinned_below`; all do where they are so long that
@@ -153,6 +168,7 @@ def sample(
             time_correction=config.time_correction,
             device=denoiser.device,
             imagination=_imagination(denoiser, windows, config),
+            text_of=text_of,
         )
 
         def told(done: int, total: int) -> None:
@@ -179,7 +195,7 @@ def sample_batch(
     config: SamplerConfig,
     *,
     seed: int,
-    planted: Constraint | None = None,
+    planted: Planting | None = None,
 ) -> Tensor:
     """Sample one motion for each of many texts: without composition, of any lengths.
 
@@ -238,13 +254,13 @@ def _denoise(
     config: SamplerConfig,
     generator: torch.Generator,
     constraints: Sequence[Constraint],
-    planted: Constraint | None,
+    planted: Planting | None,
     *,
     choose: Choice | None = None,
     on_step: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Tensor:
-    late = constraints if planted is None else (planted, *constraints)
+    late = constraints if planted is None else (planted.denoising, *constraints)
     scheduler = make_scheduler(config.scheduler, denoiser.config)
     times = denoising_steps(config.steps, config.spacing, denoiser.config.train_steps)
     scheduler.set_timesteps(timesteps=times)
@@ -267,7 +283,9 @@ def _denoise(
         x = scheduler.step(output, step, x, generator=generator).prev_sample  # type: ignore[arg-type, union-attr]
         if on_step is not None:
             on_step(done + 1, total)
-    x = apply(late if config.planted_below > 0.0 else constraints, x)
+    if planted is not None and config.planted_below > 0.0:
+        x = planted.result(x)
+    x = apply(constraints, x)
     if not torch.isfinite(x).all():
         raise SamplingError(
             f"sampling gave values that are not finite (seed {generator.initial_seed()}, scheduler "

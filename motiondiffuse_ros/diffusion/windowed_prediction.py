@@ -56,6 +56,7 @@ class WindowedPrediction:
         time_correction: float,
         device: torch.device,
         imagination: Imagination | None = None,
+        text_of: Sequence[int] | None = None,
     ) -> None:
         """Lay out batches.
 
@@ -68,9 +69,11 @@ class WindowedPrediction:
             device: Of the noisy features.
             imagination: Of the windows, where they are denoised apart at first; λ₁ then counts
                 from where they no longer are.
+            text_of: Which of the predictor's texts each window has; one each if None.
         """
         self._predict, self._windows = predict, windows
         self._imagination = imagination
+        self._text_of = range(len(windows)) if text_of is None else text_of
         self._weights = [
             torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(device)
             for w in windows
@@ -122,7 +125,7 @@ class WindowedPrediction:
     ) -> Iterator[tuple[int, int, Tensor]]:
         """Yield window, candidate and prediction [frames, D] of each; see `Imagination.at`."""
         for batch in self._batches:
-            index = torch.tensor([w for w, _ in batch])
+            texts = torch.tensor([self._text_of[w] for w, _ in batch])
             lengths = torch.tensor([len(self._weights[w]) for w, _ in batch], device=x.device)
             noisy = x.new_zeros((len(batch), int(lengths.max()), x.shape[2]))
             for row, (w, c) in zip(noisy, batch, strict=True):
@@ -131,7 +134,7 @@ class WindowedPrediction:
                 own = None if added is None else added[w]
                 if own is not None:
                     row[: len(self._weights[w])] += own[c]
-            prediction = self._predict(noisy, step, lengths, index)
+            prediction = self._predict(noisy, step, lengths, texts)
             for row, (w, c) in zip(prediction, batch, strict=True):
                 yield w, c, row[: len(self._weights[w])]
 

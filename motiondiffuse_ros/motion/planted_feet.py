@@ -67,6 +67,8 @@ class PlantingWeights:
         own_place: That there is any reach: a stance is shared between its start and its end.
         smooth: That the change of the reach changes, at the beginning and end of a contact.
         height: That the lowest sole is on the floor, against the root's own height.
+        doubt: The power of a contact's certainty that is its weight there; the higher, the less do
+            uncertain contacts keep the body down.
     """
 
     standing: float = 10.0
@@ -74,6 +76,11 @@ class PlantingWeights:
     own_place: float = 0.02
     smooth: float = 0.2
     height: float = 20.0
+    doubt: float = 1.0
+
+
+WHILE_DENOISING = PlantingWeights(doubt=8.0)
+"""Between a jump and none the denoiser predicts half a contact, which must not end the jump."""
 
 
 class PlantedFeet:
@@ -166,7 +173,8 @@ class PlantedFeet:
     def _level(self, features: Tensor, places: Tensor, certain: Tensor) -> None:
         """Change the root's height, in flight by what the nearest contacts ask for."""
         above = self._sole_heights(places).amin(2, keepdim=True)
-        certain = torch.maximum(certain.amax(2, keepdim=True), (-above / _SUNK).clamp(0.0, 1.0))
+        certain = certain.amax(2, keepdim=True) ** self._weights.doubt
+        certain = torch.maximum(certain, (-above / _SUNK).clamp(0.0, 1.0))
         missing = _smooth(certain * above, _HEIGHT_FRAMES)
         support = _smooth(certain, _HEIGHT_FRAMES)
         change = -missing / (support + 1.0 / self._weights.height)

@@ -27,6 +27,10 @@ _ANGLES = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
 _DIRECTIONS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
 
 
+_FRAMES = 1024
+"""At once: all points in all directions are many numbers."""
+
+
 @dataclass(frozen=True, eq=False)
 class Balance:
     """Distances of the capture point, negative inside.
@@ -54,12 +58,18 @@ def balance(centre: Array, places: Array, touching: NDArray[np.bool_], fps: floa
     height = np.maximum(centre[:, 2:], _LOWEST_CENTRE)
     capture = centre[:, :2] + velocity * np.sqrt(height / GRAVITY)
     used = np.flatnonzero(touching.any(axis=0))
-    reach = places[:, used, :2] @ _DIRECTIONS.T
-    support = np.max(reach, axis=1, where=touching[:, used, None], initial=-np.inf)
+    pieces = [slice(i, i + _FRAMES) for i in range(0, len(places), _FRAMES)]
+    support = np.concatenate([_reach(places[at][:, used], touching[at][:, used]) for at in pieces])
     window = 2 * round(STEP * fps) + 1
     soon = maximum_filter1d(support, window, axis=0, mode="nearest")
     own = capture @ _DIRECTIONS.T
     return Balance(_outside(own, support), _outside(own, soon))
+
+
+def _reach(places: Array, touching: NDArray[np.bool_]) -> Array:
+    """Return how far what touches the floor reaches in each direction [T, 32]."""
+    every = places[..., :2] @ _DIRECTIONS.T
+    return np.max(every, axis=1, where=touching[..., None], initial=-np.inf)
 
 
 def _outside(own: Array, support: Array) -> Array:

@@ -17,6 +17,7 @@ import numpy as np
 
 from motiondiffuse_ros.errors import Cancelled
 from motiondiffuse_ros.motion import CANONICAL, Motion
+from motiondiffuse_ros.motion.resample import sample_at
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.humanoid import DAMPING_RATIO, TIMESTEP, humanoid_model
 from motiondiffuse_ros.physics.tracking.model import DIVERGED
@@ -28,6 +29,10 @@ from motiondiffuse_ros.physics.tracking.reference import (
 
 CONTROL_RATE = 100.0
 """How often the controller's targets are renewed [Hz]."""
+
+_FIRST = 1000
+"""Frames of the reference that are made before any are known to be needed: most bodies fall soon,
+and ten minutes at this rate are a hundred megabytes."""
 
 _STEPS = round(1.0 / CONTROL_RATE / TIMESTEP)
 
@@ -72,21 +77,20 @@ def track(
         Cancelled: If `cancelled` says so.
     """
     check_trackable(motion)
-    reference = motion.resample(CONTROL_RATE)
-    qpos, velocity = reference_states(reference)
-    # the actuator damps towards zero speed; this shift makes it damp towards the reference's
-    targets = qpos[:, 7:] + DAMPING_RATIO * velocity[:, 6:]
-
+    frames = int(np.floor(motion.duration * CONTROL_RATE + 1e-6)) + 1
+    reference = _Reference.of(motion, min(frames, _FIRST))
     model = _model_that_stops()
     data = mujoco.MjData(model)
     bodies = [model.body(name).id for name in CANONICAL.names]
-    data.qpos, data.qvel = qpos[0], velocity[0]
-    states, torques, distances = [qpos[0]], [np.zeros(model.nu)], [0.0]
+    data.qpos, data.qvel = reference.qpos[0], reference.qvel[0]
+    states, torques, distances = [reference.qpos[0]], [np.zeros(model.nu)], [0.0]
     fell = diverged = False
-    for frame in range(1, reference.frames):
+    for frame in range(1, frames):
+        if len(reference.qpos) < frames and frame == len(reference.qpos) - 1:
+            reference = _Reference.of(motion, frames)
         if cancelled is not None and cancelled():
             raise Cancelled("tracking was cancelled")
-        data.ctrl = targets[frame]
+        data.ctrl = reference.targets[frame]
         mujoco.mj_step(model, data, _STEPS)
         diverged = any(data.warning[kind].number for kind in DIVERGED)
         if diverged:
@@ -99,7 +103,7 @@ def track(
         torques.append(data.actuator_force.copy())
         distances.append(float(error))
         if progress is not None:
-            progress(frame / (reference.frames - 1))
+            progress(frame / (frames - 1))
     up = not (fell or diverged)
     return Tracking(
         time_to_fall=motion.duration if up else len(states) / CONTROL_RATE,
@@ -109,6 +113,23 @@ def track(
         qpos=np.array(states),
         torques=np.array(torques),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Reference:
+    """The first frames of a motion at `CONTROL_RATE`, and what the controller aims at in each."""
+
+    positions: Array
+    qpos: Array
+    qvel: Array
+    targets: Array
+
+    @classmethod
+    def of(cls, motion: Motion, frames: int) -> _Reference:
+        sampled = sample_at(motion, np.arange(frames) / CONTROL_RATE, CONTROL_RATE)
+        qpos, qvel = reference_states(sampled)
+        # the actuator damps towards zero speed; this shift makes it damp towards the reference's
+        return cls(sampled.positions, qpos, qvel, qpos[:, 7:] + DAMPING_RATIO * qvel[:, 6:])
 
 
 @cache

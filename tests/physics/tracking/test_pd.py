@@ -18,6 +18,13 @@ def test_standing_and_waving_stay_up():
         assert tracked.mpjpe < 20.0
 
 
+def test_a_long_motion_is_tracked_to_its_end():
+    motion = waving(400)
+    tracked = track(motion)
+    assert tracked.time_to_fall == motion.duration
+    assert len(tracked.qpos) == 100 * motion.duration + 1
+
+
 def test_a_body_asked_to_hover_falls():
     tracked = track(moved(standing(60), np.array([0.0, 0.0, 1.0])))
     assert tracked.fell
