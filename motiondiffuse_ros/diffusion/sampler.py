@@ -26,7 +26,10 @@ from motiondiffuse_ros.diffusion.windowed_prediction import BATCH_ROWS, Windowed
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
 _FRACTIONS = (
-    *("part_correction", "time_correction", "apart_above", "planted_below"),
+    "part_correction",
+    "time_correction",
+    "apart_above",
+    "planted_below",
     "thinned_below",
 )
 
