@@ -74,7 +74,7 @@ class SamplerConfig:
     """
 
     scheduler: str = "dpm-solver++"
-    steps: int = 12
+    steps: int = 8
     spacing: float = 2.5
     guidance_scale: float = 4.0
     guidance_interval: tuple[float, float] = (0.8, 1.0)
