@@ -30,7 +30,7 @@ from motiondiffuse_ros.motion.skeleton import (
     TOE_HEIGHT,
 )
 
-_CERTAIN = 0.2
+_CERTAIN = 0.15
 """Contact labels up to this are taken for none."""
 
 _HEIGHT_FRAMES = 3.0
