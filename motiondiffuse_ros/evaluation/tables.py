@@ -95,4 +95,4 @@ def _shown(value: Estimate | None) -> str:
 def _to_json(value: Estimate | None) -> dict[str, Any] | None:
     if value is None:
         return None
-    return {"mean": round(value.mean, 5), "ci95": round(value.interval, 5)}
+    return {"mean": float(value.mean), "ci95": float(value.interval)}

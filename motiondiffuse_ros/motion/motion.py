@@ -115,8 +115,11 @@ class Motion:
 
         if fps == self.fps:
             return self
-        frames = int(np.floor(self.duration * fps + 1e-6)) + 1
-        return sample_at(self, np.arange(frames) / fps, fps)
+        return sample_at(self, np.arange(self.frames_at(fps)) / fps, fps)
+
+    def frames_at(self, fps: float) -> int:
+        """Return how many frames the motion has at another rate, as `resample` makes them."""
+        return int(np.floor(self.duration * fps + 1e-6)) + 1
 
     def save_npz(self, path: Path) -> None:
         """Write fps, joint_names, root, rotations and positions."""

@@ -77,7 +77,7 @@ def track(
         Cancelled: If `cancelled` says so.
     """
     check_trackable(motion)
-    frames = int(np.floor(motion.duration * CONTROL_RATE + 1e-6)) + 1
+    frames = motion.frames_at(CONTROL_RATE)
     reference = _Reference.of(motion, min(frames, _FIRST))
     model = _model_that_stops()
     data = mujoco.MjData(model)
