@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rclpy.action.server import ActionServer, CancelResponse, ServerGoalHandle
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.subscription import Subscription
 from rclpy.time import Time
@@ -78,14 +78,14 @@ class MotionDiffuseNode(LifecycleNode):
         self._inputs: list[Subscription | ActionServer] = []
         self._queue: PlanningQueue[MotionPlan] | None = None
         self._feedback = GoalFeedback()
-        self._open_goals = 0
+        self._outcomes: dict[bytes, Future[MotionPlan]] = {}  # of open goals
         self._answered = threading.Condition()
         self._health = Diagnostics(self)
         self._health.set("warn", "unconfigured")
         self._recorder = PlanRecorder(
             self._health, self.get_logger(), self.get_fully_qualified_name()
         )
-        self._group = MutuallyExclusiveCallbackGroup()
+        self._group = MutuallyExclusiveCallbackGroup()  # what comes first is queued first
         self._heartbeat = create_steady_timer(self, HEARTBEAT, self._beat)
         if self.settings["autostart"]:
             self._autostart = create_steady_timer(self, 0.0, self._start)
@@ -153,7 +153,7 @@ class MotionDiffuseNode(LifecycleNode):
         """End the work in hand and wait until every open goal has its result."""
         self._stop_working("the node is going down")
         with self._answered:
-            self._answered.wait_for(lambda: self._open_goals == 0, LONGEST_ANSWER)
+            self._answered.wait_for(lambda: not self._outcomes, LONGEST_ANSWER)
 
     def _refuse_to_configure(self, reason: str) -> TransitionCallbackReturn:
         self.get_logger().error(f"not configured: {reason}")
@@ -177,7 +177,8 @@ class MotionDiffuseNode(LifecycleNode):
                 GenerateMotion,
                 "~/generate_motion",
                 self._execute,
-                callback_group=ReentrantCallbackGroup(),
+                callback_group=self._group,
+                handle_accepted_callback=self._on_goal,
                 cancel_callback=lambda goal: CancelResponse.ACCEPT,
                 goal_service_qos_profile=GOALS,
                 result_service_qos_profile=GOALS,
@@ -325,28 +326,39 @@ class MotionDiffuseNode(LifecycleNode):
         else:
             self._health.set("ok", "ready")
 
-    def _execute(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
-        """Answer one goal. Blocks a thread of the executor, not the planning."""
-        with self._answered:
-            self._open_goals += 1
-        try:
-            return self._answer(goal)
-        finally:
-            self._feedback.end(goal)
-            with self._answered:
-                self._open_goals -= 1
-                self._answered.notify_all()
-
-    def _answer(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
-        result = GenerateMotion.Result()
+    def _on_goal(self, goal: ServerGoalHandle) -> None:
+        """Queue what a goal asks for, and leave the answer to a thread of its own."""
+        outcome: Future[MotionPlan] = Future()
         try:
             request = request_from_message(goal.request.request, robot=self.settings["robot"])
-            job = Job[MotionPlan](
+            job = Job(
                 complete(request, self.settings),
                 progress=lambda progress: self._feedback.tell(goal, progress),
                 withdrawn=lambda: goal.is_cancel_requested,
+                outcome=outcome,
             )
-            result.plan = self._submit(job).result()
+            self._submit(job)
+        except Exception as error:  # told by `_answer`
+            outcome.set_exception(error)
+        with self._answered:
+            self._outcomes[bytes(goal.goal_id.uuid)] = outcome
+        goal.execute()
+
+    def _execute(self, goal: ServerGoalHandle) -> GenerateMotion.Result:
+        """Answer one goal. Blocks a thread of the executor, not the planning."""
+        key = bytes(goal.goal_id.uuid)
+        try:
+            return self._answer(goal, self._outcomes[key])
+        finally:
+            self._feedback.end(goal)
+            with self._answered:
+                del self._outcomes[key]
+                self._answered.notify_all()
+
+    def _answer(self, goal: ServerGoalHandle, outcome: Future[MotionPlan]) -> GenerateMotion.Result:
+        result = GenerateMotion.Result()
+        try:
+            result.plan = outcome.result()
         except Cancelled as error:
             goal.canceled()
             result.error_code, result.message = int(error.code), str(error)

@@ -126,7 +126,8 @@ def test_a_thousand_goals_at_once_all_end_in_bounded_memory(operator, node):
     ends = Counter(ErrorCode(one.result().result.error_code) for one in results)
     assert ends.total() == 1000
     assert set(ends) <= {ErrorCode.SUPERSEDED, ErrorCode.SUCCESS}
-    assert ends[ErrorCode.SUCCESS] > 0
+    # goals are queued in the order in which they came, so the newest is what is planned at last
+    assert results[-1].result().result.error_code == ErrorCode.SUCCESS
     assert resident_bytes(node.pid) - before < 200e6
     assert operator.generate(goal(), ignore, ANSWER).error_code == ErrorCode.SUCCESS
 
