@@ -134,7 +134,8 @@ def _travelling(way: Travel, walks: bool, feet: NDArray[np.bool_]) -> list[Findi
     if way.side and moving:
         return [Finding("sideways", way.side)]
     if way.straight < 0 and way.path > 0.5 and moving:
-        return [Finding("back")]
+        slow = [Finding("slow back")] if way.speed < _SLOW else []
+        return [Finding("back"), *slow]
     if way.straight > 0 and way.path > 0.8 and moving and size < 0.5 * _TURN:
         return _straight_ahead(way)
     return []

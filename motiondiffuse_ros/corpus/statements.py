@@ -132,6 +132,12 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person walks backwards",
         "a person moves back and faces ahead",
         "a person takes steps backward",
+        "a person walks straight backward",
+    ),
+    "slow back": (
+        "a person walks backward slowly",
+        "a person steps back slowly and faces ahead",
+        "a person goes backward at a slow pace",
     ),
     "both hands up": (
         "a person holds both hands above the head",
@@ -206,7 +212,7 @@ _OTHERS = ("a man ", "a woman ", "the figure ")
 _VERB = re.compile(r"(^|\band )(\w+?)(?:(?<=[gd]o)es|(?<=ch)es|s)\b")
 _BODY = re.compile(r"\bthe (?=(?:left |right )?(?:hand|arm|leg|foot|feet|knee|head|palm|waist))")
 _COMPARED = 2
-_REVERSIBLE = ("walk", "slow walk")
+_REVERSED = {"walk": "back", "slow walk": "slow back"}
 _NUMBERS = ("one", "two", "three", "four", "five", "six", "seven", "eight")
 
 OPPOSED = (
@@ -248,7 +254,8 @@ def state_in_reverse(statement: Statement) -> Statement | None:
 
     Walking backward is close to walking forward in reverse (Thorstensson 1986), and rare in data.
     """
-    return Statement("back", _texts(Finding("back"))) if statement.kind in _REVERSIBLE else None
+    kind = _REVERSED.get(statement.kind)
+    return Statement(kind, _texts(Finding(kind))) if kind else None
 
 
 def all_statements() -> tuple[str, ...]:

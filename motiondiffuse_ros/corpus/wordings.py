@@ -36,11 +36,13 @@ STATED: dict[str, tuple[str, ...]] = {
     "half turn": (
         "turn (180 degrees|by half a turn|halfway round) to the left",
         "turn (around|about) (by the left|over the left side|leftward)",
+        "turn (right around|around completely|round to the back|to face the other way)",
         "turn left to face (backward|the other way|the opposite direction)",
     ),
     "full turn": (
         "(spin|turn|rotate|whirl) (all the way|fully|once) around to the left",
         "(make|do) a (full|complete|360 degree|whole) (turn|spin|rotation) to the left",
+        "(turn|spin|whirl) (right around|around completely|once around|full circle) (on the spot|)",
         "turn (360 degrees|a full circle) (left|to the left) (in place|on the spot|)",
     ),
     "curve": (
@@ -52,6 +54,7 @@ STATED: dict[str, tuple[str, ...]] = {
     "circle": (
         "walk (in a circle|in a loop|in a ring|round in a circle) (to the left|counterclockwise)",
         "(go|walk) (round and round|around in circles) to the left",
+        "(walk|go|stroll) (around a circle|in a ring|in a loop|round in circles|round and round)",
         "(make|do) a (circle|loop) to the left (on foot|walking|)",
     ),
     "run in a curve": (
@@ -75,7 +78,8 @@ STATED: dict[str, tuple[str, ...]] = {
     "one arm fast": (
         "(swing|fling|thrust|whip) your left (arm|hand) (fast|quickly|hard|out)",
         "(throw|hurl|toss|fling) (something|an object) with your left hand",
-        "(strike|hit|punch|jab) with your left (hand|fist|arm)",
+        "(strike|hit|punch|jab|box) with your left (hand|fist|arm)",
+        "(throw|land|do) a left (punch|jab|hook|cross|uppercut|handed punch) (like a boxer|)",
         "(move|swing) only your left arm (fast|quickly)",
     ),
     "one leg up": (
@@ -94,6 +98,8 @@ STATED: dict[str, tuple[str, ...]] = {
         "(walk|stroll|stride|step|move|head|go|wander) (on|onward|straight on)",
         "(go|keep walking|keep going|travel|proceed|move on foot) (straight ahead|forward)",
         "(take|make) (some|a few|several|normal|a couple of) (steps|paces|strides) forward",
+        "take (two|three|four|five) (steps|paces) (forward|ahead|straight ahead)",
+        "(walk|go|move|step) (ahead|forward|on) (for a while|for some time|a little|a bit)",
         "(walk|stroll|go) (along the path|down the street|across the room|over there|to the front)",
         "(go for|take) a (walk|stroll)",
         "(advance|approach|come forward|come closer|come over here) (walking|on foot|)",
@@ -156,6 +162,15 @@ STATED: dict[str, tuple[str, ...]] = {
         "(back away|retreat|reverse|move away backward|withdraw) (slowly|on foot|a little|)",
         "take (a few|some|several|two|a couple of) steps (back|backward|backwards)",
         "(walk|go) backwards (without turning around|facing forward|step by step)",
+        "(walk|go|move|step) (straight|directly) (back|backward|backwards|to the rear)",
+        "(walk|go|move|step) (back|backward|backwards) (for a while|for some time|a little|a bit)",
+        "take (one|two|three|four) (steps|paces) (back|backward|backwards)",
+    ),
+    "slow back": (
+        "(walk|go|move|step|creep) (back|backward|backwards|in reverse) (slowly|at a slow pace)",
+        "(walk|go|move|step) (back|backward|backwards) (carefully|without hurry|gently)",
+        "(back away|back up|retreat) (slowly|carefully|bit by bit|step by step)",
+        "take (slow|small slow|careful) steps (back|backward|backwards)",
     ),
     "both hands up": (
         "(lift|raise|put|hold|stretch|throw|reach) (both hands|your hands) (up|up high)",
@@ -501,6 +516,14 @@ _HELD_OUT = frozenset(
             "tiptoe forward",
             "step to the left",
         ),
+        *(
+            "take two steps forward",
+            "take a step back",
+            "go backward slowly",
+            "move backward slowly",
+        ),
+        *("walk ahead for a while", "turn all the way around", "walk in a circle"),
+        *("throw a left punch", "walk straight back"),
         *("sidestep to the left", "take a few steps to the left", "turn left"),
         *("walk in a circle to the left", "run in a curve to the left"),
         *("run around a bend to the left", "march on the spot", "march in place"),
@@ -519,7 +542,7 @@ _IRREGULAR = {"have": "has"}
 _HISSING = ("s", "sh", "ch", "x", "z", "o")
 _DOUBLED = re.compile(r"(?:(?:qu|[^aeiou])*[aeiou][^aeiouwxy]|.*step|control)")
 _LATER_VERBS = ("straighten", "come", "bear", "rise", "drink", "hold", "put")
-_OF_A_KIND = 64
+_OF_A_KIND = 128
 _OF_A_CLIP = 3
 
 
