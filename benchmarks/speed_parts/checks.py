@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from benchmarks.speed_parts.clock import median_seconds
-from benchmarks.speed_parts.node import TEXT
+from benchmarks.speed_parts.sampling import TEXT
 from motiondiffuse_ros.physics.report import assess
 from motiondiffuse_ros.planner import Planner, PlannerConfig
 from motiondiffuse_ros.request import MotionRequest

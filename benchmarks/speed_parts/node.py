@@ -13,12 +13,12 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from benchmarks.speed_parts.clock import memory_mb
+from benchmarks.speed_parts.sampling import TEXT
 from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
 from motiondiffuse_ros.ros.client import MotionClient
 from motiondiffuse_ros.ros.processes import isolate, ros_arguments, running
 from motiondiffuse_ros.ros.qos import COMMANDS, LATCHED, STREAM
 
-TEXT = "a person walks forward and waves with the right hand"
 PATIENCE = 120.0
 """For an answer [s]."""
 QUIET = 0.3

@@ -21,6 +21,7 @@ PAPER_STEPS = 1000
 MATRIX = 2048
 """Size of the square matrices whose product gives the machine's rate."""
 TEXT = "a person walks forward and waves with the right hand"
+"""What every part is asked for."""
 
 
 @dataclass(frozen=True)

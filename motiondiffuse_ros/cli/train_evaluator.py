@@ -60,12 +60,9 @@ def main(arguments: Sequence[str]) -> int:
         evaluator = train_evaluator(
             corpus,
             encoder,
-            EvaluatorConfig(feature_dim=corpus.representation.dim)
-            if start is None
-            else start.network.config,
+            start or EvaluatorConfig(feature_dim=corpus.representation.dim),
             options.training,
             show,
-            start,
         )
     evaluator.save_pretrained(options.out)
     summary = {

@@ -36,24 +36,25 @@ Progress = Callable[[str, float, float], None]
 def train_evaluator(
     corpus: Corpus,
     encoder: TextEncoder,
-    config: EvaluatorConfig,
+    begin: EvaluatorConfig | Evaluator,
     training: EvaluatorTraining,
     on_progress: Progress | None = None,
-    start: Evaluator | None = None,
 ) -> Evaluator:
     """Train the text-motion evaluator and, where clips have actions, the action recogniser.
 
     Args:
         corpus: Whose training split is learnt.
         encoder: Of the texts.
-        config: Of the networks; that of `start` if given.
+        begin: Layout of new networks, or an evaluator whose text-motion network is trained on and
+            whose recogniser is kept.
         training: How to train.
         on_progress: Told of every step.
-        start: Go on from its text-motion evaluator and keep its recogniser.
     """
     clips = corpus.split("train")
     torch.manual_seed(training.seed)
-    network = TextMotionNetwork(config) if start is None else deepcopy(start.network)
+    fresh = isinstance(begin, EvaluatorConfig)
+    config = begin if fresh else begin.network.config
+    network = TextMotionNetwork(config) if fresh else deepcopy(begin.network)
     captions = CaptionStates(all_captions(clips), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
@@ -68,8 +69,8 @@ def train_evaluator(
     pairs = _windows(corpus, clips, config, training, training.statements)
     _fit(network, pairs, pair_loss, training, training.minutes, "text and motion", on_progress)
 
-    if start is not None:
-        return replace(start, network=network.eval())
+    if not fresh:
+        return replace(begin, network=network.eval())
     labelled = [clip for clip in clips if action_of(clip) is not None]
     actions = actions_of(labelled)
     recogniser = ActionNetwork(config, len(actions)) if actions else None

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.spans import pieces
 
 STEP = 0.8
 """Within this time [s] a step has to come that catches the body."""
@@ -58,8 +59,8 @@ def balance(centre: Array, places: Array, touching: NDArray[np.bool_], fps: floa
     height = np.maximum(centre[:, 2:], _LOWEST_CENTRE)
     capture = centre[:, :2] + velocity * np.sqrt(height / GRAVITY)
     used = np.flatnonzero(touching.any(axis=0))
-    pieces = [slice(i, i + _FRAMES) for i in range(0, len(places), _FRAMES)]
-    support = np.concatenate([_reach(places[at][:, used], touching[at][:, used]) for at in pieces])
+    at_once = pieces(len(places), _FRAMES)
+    support = np.concatenate([_reach(places[at][:, used], touching[at][:, used]) for at in at_once])
     window = 2 * round(STEP * fps) + 1
     soon = maximum_filter1d(support, window, axis=0, mode="nearest")
     own = capture @ _DIRECTIONS.T

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion.rotations import Array, cross
+from motiondiffuse_ros.motion.spans import pieces
 
 FRICTION = 1.0
 """Coefficient of the friction cones (shoes on a dry floor)."""
@@ -33,8 +34,8 @@ def floor_forces(needed: Array, arms: Array, touching: NDArray[np.bool_]) -> tup
     Returns:
         The wrench that is left [T, 6], and the push at each point [T, P, 3], in the same units.
     """
-    pieces = [slice(i, i + _FRAMES) for i in range(0, max(len(touching), 1), _FRAMES)]
-    solved = [_solved(needed[at], arms[at], touching[at]) for at in pieces]
+    at_once = pieces(len(touching), _FRAMES)
+    solved = [_solved(needed[at], arms[at], touching[at]) for at in at_once]
     return np.concatenate([left for left, _ in solved]), np.concatenate([p for _, p in solved])
 
 
