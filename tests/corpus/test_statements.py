@@ -60,6 +60,19 @@ def test_a_walk_in_reverse_is_stated_as_walking_backward(real_paths):
     assert state_in_reverse(run) is None
 
 
+def test_a_slow_walk_in_reverse_is_stated_as_walking_backward_slowly(real_paths):
+    motion = load_motion(next(p for p in real_paths if p.stem == "02_01"))
+    at_half_speed = replace(motion.resample(2.0 * FPS), fps=FPS)
+    (walk,) = (s for s in state(STATE.encode(at_half_speed), STATE, FPS) if s.kind == "slow walk")
+    stated = state_in_reverse(walk)
+    backward = _statements(STATE.encode(at_half_speed.reversed()))
+    assert stated is not None
+    assert stated.texts == backward["slow back"]
+    assert "back" in backward
+    ahead = _statements(_of(real_paths, "02_01"))
+    assert not {"slow walk", "slow back"} & set(ahead)
+
+
 def test_the_mirror_image_of_a_window_states_the_mirrored_text(real_paths):
     index, sign = STATE.mirror()
     for path in real_paths:
