@@ -55,7 +55,8 @@ def train_evaluator(
     fresh = isinstance(begin, EvaluatorConfig)
     config = begin if fresh else begin.network.config
     network = TextMotionNetwork(config) if fresh else deepcopy(begin.network)
-    captions = CaptionStates(all_captions(clips), encoder)
+    windows = _windows(corpus, clips, config, training, training.statements)
+    captions = CaptionStates(all_captions(clips, windows.stated_texts), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
         tokens = captions.batch(batch.texts)
@@ -66,7 +67,7 @@ def train_evaluator(
         own = torch.arange(len(logits))
         return 0.5 * (F.cross_entropy(logits, own) + F.cross_entropy(logits.T, own))
 
-    pairs = _windows(corpus, clips, config, training, training.statements)
+    pairs = windows.batches(training.batch_size)
     _fit(network, pairs, pair_loss, training, training.minutes, "text and motion", on_progress)
 
     if not fresh:
@@ -102,7 +103,8 @@ def _fit_recogniser(
         return F.cross_entropy(logits, torch.tensor([index[text] for text in batch.texts]))
 
     windows = _windows(corpus, labelled, config, training, 0.0, _labels)
-    _fit(recogniser, windows, loss, training, training.action_minutes, "actions", on_progress)
+    batches = windows.batches(training.batch_size)
+    _fit(recogniser, batches, loss, training, training.action_minutes, "actions", on_progress)
 
 
 def not_wrong(batch: WindowBatch, pooled: Tensor) -> Tensor:
@@ -132,8 +134,8 @@ def _windows(
     training: EvaluatorTraining,
     statements: float,
     texts: Callable[[Clip], Sequence[str]] = texts_of,
-) -> Iterator[WindowBatch]:
-    sampler = WindowSampler(
+) -> WindowSampler:
+    return WindowSampler(
         corpus,
         clips,
         max_frames=config.max_frames,
@@ -142,7 +144,6 @@ def _windows(
         texts=texts,
         seed=training.seed,
     )
-    return sampler.batches(training.batch_size)
 
 
 def _labels(clip: Clip) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ import torch
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import forms_of
-from motiondiffuse_ros.corpus.statements import all_statements
 from motiondiffuse_ros.corpus.store import Clip
 from motiondiffuse_ros.corpus.wordings import wordings_of_clip
 from motiondiffuse_ros.evaluation.actions import action_of
@@ -57,12 +56,12 @@ def texts_of(clip: Clip) -> tuple[str, ...]:
     return *clip.captions, *labels, *wordings_of_clip(clip.name, deeds)
 
 
-def all_captions(clips: Iterable[Clip]) -> set[str]:
+def all_captions(clips: Iterable[Clip], statements: Iterable[str]) -> set[str]:
     """Return every text that training may show.
 
     Captions and action labels, with their sides, statements, the mirror images of all and the empty
     text.
     """
     texts = {form for clip in clips for text in texts_of(clip) for form in forms_of(text)}
-    texts |= set(all_statements())
+    texts |= set(statements)
     return texts | {mirror_caption(text) for text in texts} | {""}

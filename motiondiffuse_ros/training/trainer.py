@@ -118,24 +118,25 @@ class Trainer:
                 f"{out} holds a run already; add --resume or choose another --out"
             )
         train, val = corpus.split("train"), corpus.split("val")
-        texts = all_captions((*train, *val))
-        self._captions = CaptionStates(texts, encoder, on_captions)
-        self._critic = critic
-        self._alignment = (
-            None if critic is None else TextAlignment(critic, texts, denoiser_config.time_width)
-        )
         settings = {
             "max_frames": denoiser_config.max_frames,
             "mirror": config.mirror,
         }
-        self._windows = WindowSampler(
+        windows = WindowSampler(
             corpus,
             train,
             statements=config.statements,
             crop=config.crop,
             seed=ranks.seed(config.seed + self._step),
             **settings,
-        ).batches(config.batch_size)
+        )
+        texts = all_captions((*train, *val), windows.stated_texts)
+        self._captions = CaptionStates(texts, encoder, on_captions)
+        self._critic = critic
+        self._alignment = (
+            None if critic is None else TextAlignment(critic, texts, denoiser_config.time_width)
+        )
+        self._windows = windows.batches(config.batch_size)
         held_out = WindowSampler(corpus, val, statements=0.0, seed=_VALIDATION_SEED, **settings)
         batches = held_out.batches(config.batch_size)
         self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]

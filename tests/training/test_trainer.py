@@ -17,7 +17,7 @@ from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
 from motiondiffuse_ros.training.windows import WindowSampler, clip_probabilities
 
-CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=5, warmup_steps=1)
+CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=1, warmup_steps=1)
 
 
 @pytest.fixture(scope="module")
