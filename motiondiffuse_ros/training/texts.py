@@ -61,6 +61,10 @@ def all_captions(clips: Iterable[Clip], statements: Iterable[str]) -> set[str]:
 
     Captions and action labels, with their sides, statements, the mirror images of all and the empty
     text.
+
+    Args:
+        clips: That are shown.
+        statements: That may be drawn (`WindowSampler.stated_texts`).
     """
     texts = {form for clip in clips for text in texts_of(clip) for form in forms_of(text)}
     texts |= set(statements)
