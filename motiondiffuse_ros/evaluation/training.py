@@ -56,7 +56,7 @@ def train_evaluator(
     config = begin if fresh else begin.network.config
     network = TextMotionNetwork(config) if fresh else deepcopy(begin.network)
     windows = _windows(corpus, clips, config, training, training.statements)
-    captions = CaptionStates(all_captions(clips, windows.stated_texts), encoder)
+    captions = CaptionStates(all_captions(clips, windows.stated_texts()), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
         tokens = captions.batch(batch.texts)

@@ -328,17 +328,16 @@ class MotionDiffuseNode(LifecycleNode):
 
     def _on_goal(self, goal: ServerGoalHandle) -> None:
         """Queue what a goal asks for, and leave the answer to a thread of its own."""
-        outcome: Future[MotionPlan] = Future()
         try:
             request = request_from_message(goal.request.request, robot=self.settings["robot"])
-            job = Job(
+            job = Job[MotionPlan](
                 complete(request, self.settings),
                 progress=lambda progress: self._feedback.tell(goal, progress),
                 withdrawn=lambda: goal.is_cancel_requested,
-                outcome=outcome,
             )
-            self._submit(job)
+            outcome = self._submit(job)
         except Exception as error:  # told by `_answer`
+            outcome = Future[MotionPlan]()
             outcome.set_exception(error)
         with self._answered:
             self._outcomes[bytes(goal.goal_id.uuid)] = outcome

@@ -130,7 +130,7 @@ class Trainer:
             seed=ranks.seed(config.seed + self._step),
             **settings,
         )
-        texts = all_captions((*train, *val), windows.stated_texts)
+        texts = all_captions((*train, *val), windows.stated_texts())
         self._captions = CaptionStates(texts, encoder, on_captions)
         self._critic = critic
         self._alignment = (

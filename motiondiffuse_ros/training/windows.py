@@ -56,9 +56,6 @@ class WindowSampler:
     backward is half of the time walking forward played in reverse. Of clips that do
     not fit into a window a share of `crop` is shown in shorter pieces: their captions speak of the
     whole clip, so that no piece fits better than another, and people ask for any length.
-
-    Attributes:
-        stated_texts: Every statement that may be drawn, mirror images left out.
     """
 
     def __init__(
@@ -92,11 +89,13 @@ class WindowSampler:
         self._rng = np.random.default_rng(seed)
         self._probability = clip_probabilities(clips, 4 * max_frames)
         self._stated = _stated_windows(corpus, clips, max_frames) if statements > 0 else []
-        self.stated_texts = frozenset(
-            text for kind in self._stated for own in kind for window in own for text in window.texts
-        )
         self._mirror_index, self._mirror_sign = corpus.representation.mirror()
         self._step = _LENGTH_STEP if max_frames % _LENGTH_STEP == 0 else max_frames
+
+    def stated_texts(self) -> set[str]:
+        """Return every statement that may be drawn, mirror images left out."""
+        windows = (window for of_kind in self._stated for own in of_kind for window in own)
+        return {text for window in windows for text in window.texts}
 
     def batches(self, batch_size: int) -> Iterator[WindowBatch]:
         """Yield batches for ever."""
