@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
@@ -12,6 +12,7 @@ from itertools import chain
 from pathlib import Path
 
 from motiondiffuse_ros.corpus.captions import captions_of, read_captions
+from motiondiffuse_ros.corpus.copies import without_copies
 from motiondiffuse_ros.corpus.importer import load_motion
 from motiondiffuse_ros.corpus.published.dataset import ImportedClip, PublishedDataset
 from motiondiffuse_ros.corpus.quality import QualityConfig, reason_to_drop
@@ -122,21 +123,32 @@ def build_corpus(
         for path in sorted(source.folder.rglob("*.bvh"))
     ]
     total = len(jobs) + sum(map(len, config.published))
-    entries, dropped = [], Counter[str]()
+    found, dropped = defaultdict[str, list[ImportedClip]](list), Counter[str]()
     results = chain(_import_all(jobs, config), *map(_read_published, config.published))
     for done, (dataset, clips) in enumerate(results, start=1):
         for clip in clips:
             if isinstance(clip, str):
                 dropped[clip] += 1
             else:
-                entries.append((clip.name, dataset, clip.split, clip.captions, clip.features))
+                found[dataset].append(clip)
         if on_progress is not None:
             on_progress(done, total)
+    for source in config.sources:  # published data sets keep their own splits
+        once = without_copies(found[source.dataset])
+        if len(once) < len(found[source.dataset]):
+            dropped["copy of another clip"] += len(found[source.dataset]) - len(once)
+        found[source.dataset] = once
     representation, fps = config.features()
-    train = [e[4] for e in entries if e[2] == "train"]
+    train = [clip.features for own in found.values() for clip in own if clip.split == "train"]
     if not train:
         raise CorpusError(f"no clip is left for training; dropped: {dict(dropped)}")
-    clips, features = pack_clips(entries)
+    clips, features = pack_clips(
+        [
+            (clip.name, dataset, clip.split, clip.captions, clip.features)
+            for dataset, own in found.items()
+            for clip in own
+        ]
+    )
     statistics = compute_statistics(train, representation)
     return Corpus(clips, features, statistics, representation, fps, dict(dropped))
 

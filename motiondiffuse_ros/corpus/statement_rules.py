@@ -30,16 +30,17 @@ _FAST_WALK, _SLOW_RUN, _FAST_RUN = (1.6, 2.1), 2.8, 3.1  # m/s
 _HELD = 0.4  # share of the window
 _BENT, _ERECT = np.radians(40.0), np.radians(20.0)
 _SUNK, _DOWN, _REACHING = 0.12, 0.3, 0.45  # m
-_SPREAD = 1.1  # m between the wrists
+_SPREAD, _GRIP = 1.1, 0.3  # m between the wrists
 _LEG_UP, _FOOT_DOWN = 0.35, 0.15  # m, toe over the floor
 _QUICK, _CALM = 2.2, 1.0  # m/s, against the body
 _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
 _STEPS = 4
+_FEW_STEPS, _STEP_LENGTH, _STANDING = (2, 5), (0.25, 0.9), 0.9  # steps, m, share of the window
 _KNEELING, _KNEELING_UPRIGHT = 0.2, np.cos(np.radians(50.0))  # m, knee over the floor
 _FULL_TURN = np.radians((300.0, 430.0))
-_LEAP, _KNEE_UP = 0.4, 0.2  # m ahead, m of a knee below its hip
+_LEAP, _KNEE_UP, _LEG_STRAIGHT = 0.4, 0.2, 0.3  # m ahead, m of a knee below its hip
 _HEEL_UP, _TIPTOEING = 0.1, 0.6  # m over the toes, share of the window
 _CLAP, _PARTING, _CLAPS = 0.2, 0.12, 3  # m between the wrists, m further between claps, times
 _LEGS = (0.35, 0.5)  # m between the ankles: together, apart
@@ -54,11 +55,13 @@ class Finding:
         kind: What it is about.
         side: 1 is left, -1 right, 0 neither.
         metres: Distance gone, 0 where it is about something else.
+        steps: Steps taken, 0 where it is about something else.
     """
 
     kind: str
     side: int = 0
     metres: int = 0
+    steps: int = 0
 
 
 def findings(features: Array, representation: Representation, fps: float) -> list[Finding]:
@@ -135,10 +138,20 @@ def _travelling(way: Travel, walks: bool, feet: NDArray[np.bool_]) -> list[Findi
         return [Finding("sideways", way.side)]
     if way.straight < 0 and way.path > 0.5 and moving:
         slow = [Finding("slow back")] if way.speed < _SLOW else []
-        return [Finding("back"), *slow]
+        return [Finding("back"), *slow, *_counted(way, feet, "steps back")]
     if way.straight > 0 and way.path > 0.8 and moving and size < 0.5 * _TURN:
-        return _straight_ahead(way)
+        return [*_straight_ahead(way), *_counted(way, feet, "steps")]
     return []
+
+
+def _counted(way: Travel, feet: NDArray[np.bool_], kind: str) -> list[Finding]:
+    """Return how many steps a way took, if they are few and one foot stands nearly always."""
+    standing = _feet(feet)
+    steps = int((np.diff(standing.astype(int), axis=0) > 0).sum())  # feet that are put down
+    few = _FEW_STEPS[0] <= steps <= _FEW_STEPS[1]
+    long = _STEP_LENGTH[0] * steps < way.path < _STEP_LENGTH[1] * steps
+    sure = few and long and standing.any(axis=1).mean() > _STANDING
+    return [Finding(kind, steps=steps)] if sure else []
 
 
 def _turning(way: Travel, size: float, side: int) -> list[Finding]:
@@ -265,7 +278,7 @@ def _jumps(body: _Body, way: Travel, fps: float) -> list[Finding]:
             upright = body.upright.min() > _UPRIGHT
             return [Finding("hops", side)] if upright and times > 1 else []
     found = [Finding("jump")]
-    if way.path < 2.0 * _ON_THE_SPOT and _jumping_jacks(body):
+    if times > 1 and way.path < 2.0 * _ON_THE_SPOT and _jumping_jacks(body):
         found.append(Finding("jumping jacks"))
     if times > 2:
         found.append(Finding("jumps"))
@@ -298,11 +311,12 @@ def _claps(body: _Body) -> bool:
 
 
 def _marches(body: _Body) -> bool:
-    """Whether both knees come up nearly to the hips, and each of them more than once."""
-    lifts = []
-    for side in ("left", "right"):
-        below = body.level(f"{side}_hip") - body.level(f"{side}_knee")
-        lifts.append(len(runs(below < _KNEE_UP)))
+    """Whether both knees come up nearly to the hips by turns, each of them more than once."""
+    below = [body.level(f"{side}_hip") - body.level(f"{side}_knee") for side in ("left", "right")]
+    lifts = [
+        len(runs((own < _KNEE_UP) & (other > _LEG_STRAIGHT)))
+        for own, other in (below, reversed(below))
+    ]
     return min(lifts) > 1
 
 
@@ -340,6 +354,9 @@ def _hands(body: _Body, fps: float) -> list[Finding]:
         if fastest[own] > _QUICK and fastest[other] < _CALM:
             found.append(Finding("one arm fast", side))
     apart = np.linalg.norm(body.place("left_wrist") - body.place("right_wrist"), axis=-1)
+    slower = np.min([body.speed(f"{side}_wrist", fps) for side in wrists], axis=0)
+    if ((slower > _QUICK) & (apart[1:-1] < _GRIP)).any() and (apart < _GRIP).mean() > 2 * _HELD:
+        found.append(Finding("two-handed swing"))
     level = np.max([np.abs(wrists[side] - shoulders[side]) for side in wrists], axis=0) < 0.25
     if ((apart > _SPREAD) & level).mean() > _HELD:
         found.append(Finding("arms out"))

@@ -17,8 +17,8 @@ from motiondiffuse_ros.corpus.wordings import wordings
 from motiondiffuse_ros.motion.features import PoseState, Representation
 from motiondiffuse_ros.motion.rotations import Array
 
-# {n}: a number of metres in words. Sided sentences are written for the left. The first two of a
-# kind are what the choice among candidates compares with (`statements_of`).
+# {n}: a number of metres or steps in words. Sided sentences are written for the left. The first two
+# of a kind are what the choice among candidates compares with (`statements_of`).
 _SENTENCES: dict[str, tuple[str, ...]] = {
     "sideways": (
         "a person steps sideways to the left",
@@ -95,6 +95,7 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person walks very fast, almost running",
     ),
     "distance": ("a person walks forward {n}", "a person walks {n} straight ahead"),
+    "steps": ("a person goes {n} steps ahead", "a person takes {n} paces forward"),
     "on the spot": (
         "a person steps on the spot",
         "a person walks in place without getting ahead",
@@ -138,6 +139,12 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person walks backward slowly",
         "a person steps back slowly and faces ahead",
         "a person goes backward at a slow pace",
+    ),
+    "steps back": ("a person goes {n} steps backward", "a person takes {n} paces back"),
+    "two-handed swing": (
+        "a person swings something with both hands",
+        "a person strikes with a stick held in both hands",
+        "a person swings both arms together with force",
     ),
     "both hands up": (
         "a person holds both hands above the head",
@@ -213,6 +220,7 @@ _VERB = re.compile(r"(^|\band )(\w+?)(?:(?<=[gd]o)es|(?<=ch)es|s)\b")
 _BODY = re.compile(r"\bthe (?=(?:left |right )?(?:hand|arm|leg|foot|feet|knee|head|palm|waist))")
 _COMPARED = 2
 _REVERSED = {"walk": "back", "slow walk": "slow back"}
+_COUNTED = ("steps", "steps back")
 _NUMBERS = ("one", "two", "three", "four", "five", "six", "seven", "eight")
 
 OPPOSED = (
@@ -283,6 +291,8 @@ def _forms(kinds: tuple[str, ...]) -> tuple[Finding, ...]:
 def _forms_of(kind: str) -> tuple[Finding, ...]:
     if kind == "distance":
         return tuple(Finding(kind, metres=n + 1) for n in range(len(_NUMBERS)))
+    if kind in _COUNTED:
+        return tuple(Finding(kind, steps=n) for n in range(2, 6))
     if "left" in _SENTENCES[kind][0]:
         return Finding(kind, side=1), Finding(kind, side=-1)
     return (Finding(kind),)
@@ -299,12 +309,14 @@ def _sentences(finding: Finding) -> tuple[str, ...]:
 
 
 def _filled(texts: tuple[str, ...], finding: Finding) -> tuple[str, ...]:
-    """Return texts written for the left, or for any distance, as they are for a finding."""
+    """Return texts written for the left, or for any number, as they are for a finding."""
     if finding.side < 0:
         return tuple(map(mirror_caption, texts))
     if finding.metres:
         way = f"{_NUMBERS[finding.metres - 1]} meter{'s' if finding.metres > 1 else ''}"
         return tuple(text.format(n=way) for text in texts)
+    if finding.steps:
+        return tuple(text.format(n=_NUMBERS[finding.steps - 1]) for text in texts)
     return texts
 
 

@@ -54,6 +54,8 @@ STATED: dict[str, tuple[str, ...]] = {
     "circle": (
         "walk (in a circle|in a loop|in a ring|round in a circle) (to the left|counterclockwise)",
         "(go|walk) (round and round|around in circles) to the left",
+        "(walk|go|move|step|stroll) in a (left hand|left-hand) (circle|loop|ring)",
+        "(walk|go|move|stroll) (in circles|in a wide circle|in a small circle) to the left",
         "(walk|go|stroll) (around a circle|in a ring|in a loop|round in circles|round and round)",
         "(make|do) a (circle|loop) to the left (on foot|walking|)",
     ),
@@ -98,7 +100,6 @@ STATED: dict[str, tuple[str, ...]] = {
         "(walk|stroll|stride|step|move|head|go|wander) (on|onward|straight on)",
         "(go|keep walking|keep going|travel|proceed|move on foot) (straight ahead|forward)",
         "(take|make) (some|a few|several|normal|a couple of) (steps|paces|strides) forward",
-        "take (two|three|four|five) (steps|paces) (forward|ahead|straight ahead)",
         "(walk|go|move|step) (ahead|forward|on) (for a while|for some time|a little|a bit)",
         "(walk|stroll|go) (along the path|down the street|across the room|over there|to the front)",
         "(go for|take) a (walk|stroll)",
@@ -120,6 +121,11 @@ STATED: dict[str, tuple[str, ...]] = {
         "(go|move|step|stroll|advance) (forward|ahead|straight) (by|for) {n}",
         "(walk|go|travel) (about|exactly|a distance of|for) {n}",
         "take a walk of {n}",
+    ),
+    "steps": (
+        "(walk|step|go|move|come) {n} (steps|paces) (forward|ahead|straight ahead)",
+        "(take|do|make) {n} (steps ahead|strides forward|forward steps|steps straight ahead)",
+        "walk forward for {n} (steps|paces) (only|and no further|)",
     ),
     "on the spot": (
         "(walk|step|tread|pace) (on the spot|in place|without moving forward)",
@@ -160,11 +166,15 @@ STATED: dict[str, tuple[str, ...]] = {
     "back": (
         "(walk|go|step|move|head) (back|backward|backwards|rearward|in reverse|to the rear)",
         "(back away|retreat|reverse|move away backward|withdraw) (slowly|on foot|a little|)",
-        "take (a few|some|several|two|a couple of) steps (back|backward|backwards)",
+        "take (a few|some|several|a couple of) steps (back|backward|backwards)",
+        "(back up|back off) (a little|a bit|for a while|on foot|some more|away from somebody)",
         "(walk|go) backwards (without turning around|facing forward|step by step)",
         "(walk|go|move|step) (straight|directly) (back|backward|backwards|to the rear)",
         "(walk|go|move|step) (back|backward|backwards) (for a while|for some time|a little|a bit)",
-        "take (one|two|three|four) (steps|paces) (back|backward|backwards)",
+    ),
+    "steps back": (
+        "(walk|step|go|move|back up) {n} (steps|paces) (back|backward|backwards)",
+        "(take|do|make) {n} steps (back|backward|to the rear)",
     ),
     "slow back": (
         "(walk|go|move|step|creep) (back|backward|backwards|in reverse) (slowly|at a slow pace)",
@@ -178,7 +188,15 @@ STATED: dict[str, tuple[str, ...]] = {
         "(raise|hold|put) (both arms|both hands|your hands) (overhead|in the air)",
         "(raise|hold|put) (both arms|both hands|your hands) (over your head|skyward)",
         "(surrender|give up|cheer|celebrate) with (both hands up|your arms in the air|arms raised)",
+        "(stretch|extend|reach|lift) (both arms|your hands) (overhead|above your head)",
+        "(stretch|extend|reach|lift) (both hands|your arms) over your head",
         "(stretch|reach) (up|upward|for the sky|for the ceiling) with both (hands|arms)",
+    ),
+    "two-handed swing": (
+        "(swing|wield|use) (a club|a bat|a stick|a heavy hammer|an axe|a pole) with both hands",
+        "(hit|strike|drive) (something|a ball) with a (club|bat|stick) in both hands",
+        "(swing|take a swing with) (a club|a bat|a long stick)",
+        "swing both (arms|hands) (together|to one side|around the body) (fast|with force)",
     ),
     "both hands wave": (
         "wave (your arms|your hands|both your hands|both arms overhead|with two hands)",
@@ -263,6 +281,7 @@ STATED: dict[str, tuple[str, ...]] = {
         "(do nothing|freeze|stop|halt|stop moving|hold the position)",
         "(stand|wait) (upright|at ease|idle|around|for somebody|for the bus|in line)",
         "(stand at attention|stand there|make no movement)",
+        "(do not move|don't move at all|stay put|keep quite still|do not move a muscle)",
     ),
 }
 
@@ -298,11 +317,12 @@ DONE: dict[str, tuple[str, ...]] = {
         "(move|sway|groove) to the (music|beat|rhythm)",
         "(bust|show off) some moves",
     ),
-    r"(plays a game of golf|swings a golf club|putts a golf ball)": (
-        "(swing|use) a golf club",
+    r"swings a golf club": (
+        "(swing|use) a (golf club|golf club hard)",
         "(play|practice) (golf|a golf shot|a golf swing|a round of golf)",
-        "(tee off|drive a golf ball|make a golf swing|hit a golf shot)",
+        "(tee off|drive a golf ball|make a golf swing|hit a golf shot|hit a long golf shot)",
     ),
+    r"putts a golf ball": ("(putt|putt a golf ball|play a putt)",),
     r"(pitches a baseball|throws an underhand fast pitch|tosses a ball underhand)": (
         "(pitch|throw|hurl) (a baseball|a ball|a fastball) (hard|fast|to the batter|)",
         "(throw|make) a pitch",
@@ -401,6 +421,7 @@ DONE: dict[str, tuple[str, ...]] = {
         r"walks .*on the toes.*|walks on toes.*)"
     ): (
         "(sneak|tiptoe|creep|steal|prowl) (along|forward|ahead|quietly|around|)",
+        "(sneak|creep|steal) (forward|ahead) (without a sound|softly|secretly|on quiet feet)",
         "walk (on tiptoe|on your toes|quietly|stealthily|without a sound|like a burglar)",
     ),
     r"(walks (like a drunk|as if drunk)|staggers as if drunk|waits while drunk)": (
@@ -532,6 +553,8 @@ _HELD_OUT = frozenset(
         *("jump once", "jump up", "jump up and down", "do jumping jacks", "dance to the music"),
         *("perform a dance", "crouch", "squat down", "duck down", "kneel on the floor"),
         *("get down on your knees", "pick something up from the floor", "sit down"),
+        *("back up", "don't move", "sneak forward quietly", "hit a golf ball", "march on the spot"),
+        *("go in a left hand circle", "stretch your arms overhead"),
         *("take a seat", "swing a golf club", "throw a ball", "toss something far"),
     )
 )
@@ -563,14 +586,14 @@ def wordings_of_clip(name: str, texts: tuple[str, ...]) -> tuple[str, ...]:
         name: Of the clip; clips of the same deed get different ones.
         texts: Its first caption, and its action label if it has one.
     """
-    deeds = [text.removeprefix("a person ") for text in texts]
-    phrases = tuple(
-        phrase
-        for pattern, own in DONE.items()
-        if any(re.fullmatch(pattern, deed) for deed in deeds)
-        for phrase in own
-    )
+    phrases = tuple(phrase for deed in deeds_of(*texts) for phrase in DONE[deed])
     return _thinned(_voiced(phrases), _OF_A_CLIP, name)
+
+
+def deeds_of(*texts: str) -> tuple[str, ...]:
+    """Return the keys of `DONE` that one of some texts, each of a clip, is about."""
+    told = [text.removeprefix("a person ") for text in texts]
+    return tuple(deed for deed in DONE if any(re.fullmatch(deed, text) for text in told))
 
 
 def all_wordings() -> tuple[str, ...]:

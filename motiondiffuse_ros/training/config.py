@@ -23,6 +23,8 @@ class TrainConfig:
         condition_dropout: Share of windows trained with the empty text, for guidance.
         mirror: Share of windows that are mirrored, with left and right swapped in the text.
         statements: Share of windows whose text is what their kinematics state for certain.
+        deeds: Share of windows drawn by what is done in them, as other words name it
+            (`corpus.wordings`), so that rare deeds are seen as often as frequent ones.
         crop: Share of windows of clips longer than a window that are shown in shorter pieces.
         difference_weight: Weight of the loss on frame-to-frame differences.
         position_weight: Weight of the loss on joint positions by forward kinematics.
@@ -48,6 +50,7 @@ class TrainConfig:
     condition_dropout: float = 0.1
     mirror: float = 0.5
     statements: float = 0.3
+    deeds: float = 0.0
     crop: float = 0.5
     difference_weight: float = 3.0
     position_weight: float = 0.5
@@ -71,9 +74,15 @@ class TrainConfig:
                 raise InputError(f"training {name} must be positive, got {getattr(self, name)}")
         if not self.snr_limit >= 1.0:
             raise InputError(f"training snr_limit must be at least 1, got {self.snr_limit}")
-        for name in ("condition_dropout", "mirror", "statements", "crop", "noisiest", "ema_decay"):
+        shares = ("condition_dropout", "mirror", "statements", "deeds", "crop", "noisiest")
+        for name in (*shares, "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(f"training {name} must be from 0 to 1, got {getattr(self, name)}")
+        if self.statements + self.deeds > 1.0:
+            raise InputError(
+                f"training statements and deeds are shares of one whole, got {self.statements} and "
+                f"{self.deeds}"
+            )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as JSON types."""

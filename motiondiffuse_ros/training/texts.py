@@ -52,8 +52,13 @@ def texts_of(clip: Clip) -> tuple[str, ...]:
     """
     label = action_of(clip)
     labels = () if label is None else (label,)
-    deeds = (*clip.captions[:1], *labels)
-    return *clip.captions, *labels, *wordings_of_clip(clip.name, deeds)
+    return *clip.captions, *labels, *wordings_of_clip(clip.name, named_deeds(clip))
+
+
+def named_deeds(clip: Clip) -> tuple[str, ...]:
+    """Return what names the deed of a clip: its first caption and, if it has one, its label."""
+    label = action_of(clip)
+    return clip.captions[:1] if label is None else (*clip.captions[:1], label)
 
 
 def all_captions(clips: Iterable[Clip], statements: Iterable[str]) -> set[str]:

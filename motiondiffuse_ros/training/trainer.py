@@ -126,6 +126,7 @@ class Trainer:
             corpus,
             train,
             statements=config.statements,
+            deeds=config.deeds,
             crop=config.crop,
             seed=ranks.seed(config.seed + self._step),
             **settings,

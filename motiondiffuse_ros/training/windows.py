@@ -13,7 +13,8 @@ from motiondiffuse_ros.corpus.captions import mirror_caption
 from motiondiffuse_ros.corpus.sideways import name_side
 from motiondiffuse_ros.corpus.statements import state, state_in_reverse
 from motiondiffuse_ros.corpus.store import Clip, Corpus
-from motiondiffuse_ros.training.texts import texts_of
+from motiondiffuse_ros.corpus.wordings import deeds_of
+from motiondiffuse_ros.training.texts import named_deeds, texts_of
 
 _BUCKET_BATCHES = 8
 _LENGTH_STEP = 28
@@ -53,9 +54,10 @@ class WindowSampler:
 
     Most come with a caption of their clip, a share of `statements` with what their kinematics
     state for certain; of those each kind of statement is as frequent as any other, and walking
-    backward is half of the time walking forward played in reverse. Of clips that do
-    not fit into a window a share of `crop` is shown in shorter pieces: their captions speak of the
-    whole clip, so that no piece fits better than another, and people ask for any length.
+    backward is half of the time walking forward played in reverse. A share of `deeds` comes with a
+    caption, too, but each deed that `corpus.wordings` knows is as frequent as any other. Of clips
+    that do not fit into a window a share of `crop` is shown in shorter pieces: their captions speak
+    of the whole clip, so that no piece fits better than another, and people ask for any length.
     """
 
     def __init__(
@@ -66,6 +68,7 @@ class WindowSampler:
         max_frames: int,
         mirror: float,
         statements: float = 0.0,
+        deeds: float = 0.0,
         crop: float = 0.0,
         texts: Callable[[Clip], Sequence[str]] = texts_of,
         seed: int,
@@ -78,17 +81,19 @@ class WindowSampler:
             max_frames: Longest window.
             mirror: Share of mirrored windows.
             statements: Share of windows with a statement for a text.
+            deeds: Share of windows drawn by what is done in their clips.
             crop: Share of windows of long clips that are shorter than they could be.
             texts: What may be said of a clip.
             seed: Of the draws.
         """
         self._texts = texts
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
-        self._mirror, self._statements, self._crop = mirror, statements, crop
+        self._mirror, self._statements, self._deeds, self._crop = mirror, statements, deeds, crop
         self._shortest = min(round(_CROP_SECONDS * corpus.fps), max_frames)
         self._rng = np.random.default_rng(seed)
         self._probability = clip_probabilities(clips, 4 * max_frames)
         self._stated = _stated_windows(corpus, clips, max_frames) if statements > 0 else []
+        self._done = _clips_by_deed(clips) if deeds > 0 else []
         self._mirror_index, self._mirror_sign = corpus.representation.mirror()
         self._step = _LENGTH_STEP if max_frames % _LENGTH_STEP == 0 else max_frames
 
@@ -106,14 +111,20 @@ class WindowSampler:
                 yield self._collate(windows[b * batch_size : (b + 1) * batch_size])
 
     def _draw(self) -> _Window:
-        stated = self._stated and self._rng.random() < self._statements
-        window = self._draw_stated() if stated else self._draw_captioned()
+        place = self._rng.random()
+        if self._stated and place < self._statements:
+            window = self._draw_stated()
+        elif self._done and place < self._statements + self._deeds:
+            of_deed = self._done[self._rng.integers(len(self._done))]
+            window = self._captioned(of_deed[self._rng.integers(len(of_deed))])
+        else:
+            clip = self._rng.choice(len(self._clips), p=self._probability)
+            window = self._captioned(self._clips[clip])
         if self._rng.random() >= self._mirror:
             return window
         return replace(window, texts=tuple(map(mirror_caption, window.texts)), mirrored=True)
 
-    def _draw_captioned(self) -> _Window:
-        clip = self._clips[self._rng.choice(len(self._clips), p=self._probability)]
+    def _captioned(self, clip: Clip) -> _Window:
         frames = min(clip.frames, self._max_frames)
         if clip.frames > self._max_frames and self._rng.random() < self._crop:
             frames = int(self._rng.integers(self._shortest, self._max_frames + 1))
@@ -176,6 +187,14 @@ def _stated_windows(
         for kind, windows in own.items():
             found[kind].append(windows)
     return [found[kind] for kind in sorted(found)]
+
+
+def _clips_by_deed(clips: Sequence[Clip]) -> list[list[Clip]]:
+    found: dict[str, list[Clip]] = defaultdict(list)
+    for clip in clips:
+        for deed in deeds_of(*named_deeds(clip)):
+            found[deed].append(clip)
+    return [found[deed] for deed in sorted(found)]
 
 
 def clip_probabilities(clips: Sequence[Clip], max_frames: int) -> np.ndarray:
