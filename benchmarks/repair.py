@@ -110,7 +110,8 @@ def _best(
     """Choose as the planner does: among those that match the text, the most plausible."""
     whole = TimedText(text, 0, motions[0].frames)
     matches = TextMatch(critic, [whole])([representation.encode(m) for m in motions])
-    return repair_best({i: put_on_floor(motions[i]) for i in eligible(matches)})[1].motion
+    able = eligible(dict(enumerate(matches)))
+    return repair_best({i: put_on_floor(motions[i]) for i in able})[1].motion
 
 
 def _sampled(

@@ -487,8 +487,7 @@ class Planner:
 
         def judge() -> _Chosen:
             matches = dict(zip(candidates, self._matches(match, candidates.values()), strict=True))
-            names = list(candidates)
-            able = {names[i]: candidates[names[i]] for i in eligible(list(matches.values()))}
+            able = {i: candidates[i] for i in eligible(matches)}
             reports: list[Report] = []
 
             def judged(motion: Motion) -> Report:

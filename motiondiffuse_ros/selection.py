@@ -6,7 +6,7 @@ physics. So only candidates that match the texts about as well as the best one a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -64,15 +64,15 @@ class TextMatch:
         return [float(row @ frames / frames.sum()) for row in lead]
 
 
-def eligible(matches: Sequence[float | None]) -> list[int]:
-    """Return the indices of the candidates that match well enough to be chosen.
+def eligible(matches: Mapping[int, float | None]) -> list[int]:
+    """Return the candidates that match well enough to be chosen.
 
     Args:
-        matches: Of `TextMatch`.
+        matches: Of `TextMatch`, by candidate.
     """
-    known = [match for match in matches if match is not None]
+    known = [match for match in matches.values() if match is not None]
     least = max(known) - MATCH_MARGIN if known else None
-    return [i for i, m in enumerate(matches) if least is None or m is None or m >= least]
+    return [i for i, m in matches.items() if least is None or m is None or m >= least]
 
 
 def leading(matches: Sequence[float | None], count: int) -> list[int]:

@@ -17,7 +17,7 @@ def test_those_are_eligible_that_match_about_as_well_as_the_best(matches):
     known = [m for m in matches if m is not None]
     least = max(known, default=-2.0) - MATCH_MARGIN
     good = [i for i, m in enumerate(matches) if m is None or m >= least]
-    assert eligible(matches) == good
+    assert eligible(dict(enumerate(matches))) == good
     assert good
 
 
@@ -35,7 +35,7 @@ def test_as_many_lead_as_are_asked_for_and_none_that_is_left_matches_better(matc
 
 
 def test_standing_still_does_not_win_by_being_plausible():
-    assert eligible([0.1, 0.6, 0.58]) == [1, 2]
+    assert eligible({0: 0.1, 3: 0.6, 7: 0.58}) == [3, 7]
 
 
 def test_real_clips_match_their_own_words_and_side_best(real_paths):

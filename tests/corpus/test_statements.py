@@ -168,6 +168,39 @@ def test_a_walk_with_the_knees_as_high_as_the_hips_is_a_march(real_paths):
     assert "march ahead" in _statements(features)
 
 
+def test_knees_that_come_up_to_the_hips_together_do_not_march():
+    features = STATE.encode(standing(81))
+    low = np.arange(81) % 20 < 6
+    for side in ("left", "right"):
+        rows = features[low]
+        _placed(rows, f"{side}_knee", y=0.85)
+        features[low] = rows
+        _placed(features, f"{side}_ankle", y=np.where(low, 0.3, 0.08))
+    assert not {"march", "march ahead"} & set(_statements(features))
+
+
+def test_a_few_steps_are_counted_in_words(real_paths):
+    features = _slow_walk(real_paths)
+    feet = features[:, STATE.groups()["contacts"]].reshape(len(features), 2, -1)
+    down = np.diff((feet > 0.5).any(axis=2).astype(int), axis=0) > 0
+    (landings,) = np.nonzero(down.any(axis=1))
+    assert len(landings) > 4
+    for steps, word in ((2, "two"), (3, "three"), (4, "four")):
+        window = features[: landings[steps - 1] + 2]
+        assert f"a person goes {word} steps ahead" in _statements(window)["steps"]
+    assert "steps" not in _statements(features[: landings[0] + 2])
+
+
+def test_both_hands_on_one_stick_swing_it():
+    features = STATE.encode(standing(81))
+    place = 0.5 * np.sin(np.clip(np.arange(81) - 40, -4, 4) * np.pi / 8)
+    for side, grip in (("left", 0.1), ("right", -0.1)):
+        _placed(features, f"{side}_wrist", x=place + grip, y=1.0, z=0.5)
+    assert "two-handed swing" in _statements(features)
+    _placed(features, "right_wrist", x=-0.6)
+    assert "two-handed swing" not in _statements(features)
+
+
 def _bounces(wrist, spread):
     """Jumps once a second, with wrists and ankles that go out and back on the way."""
     features = STATE.encode(standing(81))

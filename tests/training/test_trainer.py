@@ -114,6 +114,21 @@ def test_stated_windows_come_with_what_their_kinematics_say(corpus):
         assert text in synonyms
 
 
+def test_rare_deeds_are_drawn_as_often_as_frequent_ones():
+    texts = [*["a person dances"] * 30, "a person swings a golf club"]
+    corpus = corpus_of([(str(i), "train", text, waving(40)) for i, text in enumerate(texts)])
+    sampler = WindowSampler(
+        *(corpus, corpus.clips),
+        max_frames=64,
+        mirror=0.0,
+        deeds=1.0,
+        texts=lambda clip: clip.captions,
+        seed=0,
+    )
+    drawn = next(sampler.batches(200)).texts
+    assert 70 < drawn.count("a person swings a golf club") < 130
+
+
 def test_walks_are_also_shown_in_reverse_as_walking_backward(real_paths):
     walk = load_motion(next(p for p in real_paths if p.stem == "02_01")).resample(20.0)
     walks = corpus_of([("02_01", "train", "a person walks", walk)])
@@ -134,6 +149,8 @@ def test_bad_settings_are_refused():
         TrainConfig(batch_size=0).validate()
     with pytest.raises(InputError, match="mirror must be from 0 to 1"):
         TrainConfig(mirror=1.5).validate()
+    with pytest.raises(InputError, match=r"shares of one whole, got 0\.7 and 0\.4"):
+        TrainConfig(statements=0.7, deeds=0.4).validate()
 
 
 def test_many_takes_of_one_gesture_do_not_crowd_out_the_rest(corpus):
