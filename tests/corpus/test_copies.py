@@ -13,11 +13,15 @@ def _clip(name, caption, split="train", of=0):
     return ImportedClip(name, split, (caption,), np.full((30, 4), of, np.float32))
 
 
+def _names(clips):
+    return [clip.name for clip in clips]
+
+
 def test_the_copy_whose_caption_says_more_stays():
     vague, telling = _clip("122_41", "a person walks"), _clip("83_41", "a person hops forward")
     other = _clip("122_42", "a person walks", of=1)
-    assert without_copies([vague, telling, other]) == [telling, other]
-    assert without_copies([other, telling, vague]) == [other, telling]
+    assert _names(without_copies([vague, telling, other])) == ["83_41", "122_42"]
+    assert _names(without_copies([other, telling, vague])) == ["122_42", "83_41"]
 
 
 def test_a_motion_is_for_training_if_any_copy_is():
@@ -29,7 +33,7 @@ def test_a_motion_is_for_training_if_any_copy_is():
 
 def test_clips_that_differ_all_stay():
     clips = [_clip(str(i), "a person walks", of=i) for i in range(5)]
-    assert without_copies(clips) == clips
+    assert _names(without_copies(clips)) == _names(clips)
 
 
 def test_a_corpus_has_every_motion_once_and_says_what_was_dropped(real_clips, tmp_path):
