@@ -50,9 +50,8 @@ def texts_of(clip: Clip) -> tuple[str, ...]:
     Its captions, where its name has one the words of its action label, and some other words for
     what they say.
     """
-    label = action_of(clip)
-    labels = () if label is None else (label,)
-    return *clip.captions, *labels, *wordings_of_clip(clip.name, named_deeds(clip))
+    deeds = named_deeds(clip)
+    return *clip.captions, *deeds[1:], *wordings_of_clip(clip.name, deeds)
 
 
 def named_deeds(clip: Clip) -> tuple[str, ...]:
