@@ -23,11 +23,12 @@ def without_copies(clips: Sequence[ImportedClip]) -> list[ImportedClip]:
         clips: In any order; that of those that stay is kept.
     """
     shared = Counter(clip.captions[0] for clip in clips)
-    copies: dict[bytes, list[ImportedClip]] = defaultdict(list)
-    for clip in clips:
-        copies[hashlib.sha256(clip.features.tobytes()).digest()].append(clip)
-    kept: dict[str, str] = {}
+    copies: dict[bytes, list[int]] = defaultdict(list)
+    for i, clip in enumerate(clips):
+        copies[hashlib.sha256(clip.features.tobytes()).digest()].append(i)
+    kept: dict[int, ImportedClip] = {}
     for own in copies.values():
-        most_telling = min(own, key=lambda clip: (shared[clip.captions[0]], clip.name))
-        kept[most_telling.name] = min((clip.split for clip in own), key=SPLITS.index)
-    return [replace(clip, split=kept[clip.name]) for clip in clips if clip.name in kept]
+        most_telling = min(own, key=lambda i: (shared[clips[i].captions[0]], clips[i].name))
+        split = min((clips[i].split for i in own), key=SPLITS.index)
+        kept[most_telling] = replace(clips[most_telling], split=split)
+    return [kept[i] for i in sorted(kept)]

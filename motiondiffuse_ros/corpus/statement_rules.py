@@ -37,7 +37,7 @@ _SWING, _WAVES = 0.06, 3  # m to and fro, times
 _OFF_THE_FLOOR = 0.06  # m
 _FREE_FALL, _FLIGHT = -5.0, 0.12  # m/s², s
 _STEPS = 4
-_FEW_STEPS, _STEP_LENGTH, _STANDING = (2, 5), (0.25, 0.9), 0.9  # steps, m, share of the window
+_STEP_LENGTH, _STANDING = (0.25, 0.9), 0.9  # m, share of the window
 _KNEELING, _KNEELING_UPRIGHT = 0.2, np.cos(np.radians(50.0))  # m, knee over the floor
 _FULL_TURN = np.radians((300.0, 430.0))
 _LEAP, _KNEE_UP, _LEG_STRAIGHT = 0.4, 0.2, 0.3  # m ahead, m of a knee below its hip
@@ -45,6 +45,9 @@ _HEEL_UP, _TIPTOEING = 0.1, 0.6  # m over the toes, share of the window
 _CLAP, _PARTING, _CLAPS = 0.2, 0.12, 3  # m between the wrists, m further between claps, times
 _LEGS = (0.35, 0.5)  # m between the ankles: together, apart
 _SEAT, _SEAT_BEHIND, _SITTING = (0.3, 0.75), 0.15, 0.7  # m, m behind the heels, s
+
+FEW_STEPS = range(2, 6)
+"""Numbers of steps that are counted."""
 
 
 @dataclass(frozen=True)
@@ -146,11 +149,9 @@ def _travelling(way: Travel, walks: bool, feet: NDArray[np.bool_]) -> list[Findi
 
 def _counted(way: Travel, feet: NDArray[np.bool_], kind: str) -> list[Finding]:
     """Return how many steps a way took, if they are few and one foot stands nearly always."""
-    standing = _feet(feet)
-    steps = int((np.diff(standing.astype(int), axis=0) > 0).sum())  # feet that are put down
-    few = _FEW_STEPS[0] <= steps <= _FEW_STEPS[1]
+    steps = int((_changes(feet) > 0).sum())
     long = _STEP_LENGTH[0] * steps < way.path < _STEP_LENGTH[1] * steps
-    sure = few and long and standing.any(axis=1).mean() > _STANDING
+    sure = steps in FEW_STEPS and long and _feet(feet).any(axis=1).mean() > _STANDING
     return [Finding(kind, steps=steps)] if sure else []
 
 
@@ -195,14 +196,18 @@ def _straight_ahead(way: Travel) -> list[Finding]:
 
 def _walks(contacts: NDArray[np.bool_]) -> bool:
     """Whether each foot leaves the floor and stands on it, and one of them most of the time."""
-    feet = _feet(contacts)
-    steps = np.abs(np.diff(feet.astype(int), axis=0)).sum(axis=0)
-    return bool((steps >= 2).all() and feet.any(axis=1).mean() > 0.3)
+    steps = np.abs(_changes(contacts)).sum(axis=0)
+    return bool((steps >= 2).all() and _feet(contacts).any(axis=1).mean() > 0.3)
 
 
 def _step_count(contacts: NDArray[np.bool_]) -> int:
     """Return how often a foot is lifted."""
-    return int((np.diff(_feet(contacts).astype(int), axis=0) < 0).sum())
+    return int((_changes(contacts) < 0).sum())
+
+
+def _changes(contacts: NDArray[np.bool_]) -> NDArray[np.int_]:
+    """Return where each foot is put down (1) and lifted (-1) [T - 1, 2]."""
+    return np.diff(_feet(contacts).astype(int), axis=0)
 
 
 def _feet(contacts: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -335,7 +340,8 @@ def _hands(body: _Body, fps: float) -> list[Finding]:
     shoulders = {side: body.level(f"{side}_shoulder") for side in wrists}
     up = {side: wrists[side] > head for side in wrists}
     down = {side: (wrists[side] < shoulders[side]).all() for side in wrists}
-    fastest = {side: body.speed(f"{side}_wrist", fps).max(initial=0.0) for side in wrists}
+    speeds = {side: body.speed(f"{side}_wrist", fps) for side in wrists}
+    fastest = {side: speed.max(initial=0.0) for side, speed in speeds.items()}
     found = []
     swings = {
         side: _swings(body.place(f"{side}_wrist"), wrists[side] > shoulders[side])
@@ -354,7 +360,7 @@ def _hands(body: _Body, fps: float) -> list[Finding]:
         if fastest[own] > _QUICK and fastest[other] < _CALM:
             found.append(Finding("one arm fast", side))
     apart = np.linalg.norm(body.place("left_wrist") - body.place("right_wrist"), axis=-1)
-    slower = np.min([body.speed(f"{side}_wrist", fps) for side in wrists], axis=0)
+    slower = np.minimum(speeds["left"], speeds["right"])
     if ((slower > _QUICK) & (apart[1:-1] < _GRIP)).any() and (apart < _GRIP).mean() > 2 * _HELD:
         found.append(Finding("two-handed swing"))
     level = np.max([np.abs(wrists[side] - shoulders[side]) for side in wrists], axis=0) < 0.25

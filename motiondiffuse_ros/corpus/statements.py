@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from motiondiffuse_ros.corpus.captions import mirror_caption
-from motiondiffuse_ros.corpus.statement_rules import Finding, findings
+from motiondiffuse_ros.corpus.statement_rules import FEW_STEPS, Finding, findings
 from motiondiffuse_ros.corpus.wordings import wordings
 from motiondiffuse_ros.motion.features import PoseState, Representation
 from motiondiffuse_ros.motion.rotations import Array
@@ -292,7 +292,7 @@ def _forms_of(kind: str) -> tuple[Finding, ...]:
     if kind == "distance":
         return tuple(Finding(kind, metres=n + 1) for n in range(len(_NUMBERS)))
     if kind in _COUNTED:
-        return tuple(Finding(kind, steps=n) for n in range(2, 6))
+        return tuple(Finding(kind, steps=n) for n in FEW_STEPS)
     if "left" in _SENTENCES[kind][0]:
         return Finding(kind, side=1), Finding(kind, side=-1)
     return (Finding(kind),)

@@ -31,6 +31,14 @@ def test_a_motion_is_for_training_if_any_copy_is():
     assert [c.split for c in without_copies([unseen, other])] == ["test"]
 
 
+def test_copies_of_one_name_are_told_apart():
+    one, same = _clip("a", "a person walks"), _clip("a", "a person walks")
+    assert _names(without_copies([one, same])) == ["a"]
+    other, twin = _clip("a", "a person walks", of=1), _clip("b", "a person hops")
+    stay = without_copies([one, other, twin])
+    assert [(c.name, c.features[0, 0]) for c in stay] == [("a", 1), ("b", 0)]
+
+
 def test_clips_that_differ_all_stay():
     clips = [_clip(str(i), "a person walks", of=i) for i in range(5)]
     assert _names(without_copies(clips)) == _names(clips)
