@@ -82,9 +82,9 @@ class PlanWorker:
     """A planner in a process of its own; Ray makes an actor of it."""
 
     def __init__(self, config: PlannerConfig, threads: int) -> None:
-        from motiondiffuse_ros.diffusion.threads import use_threads
+        from motiondiffuse_ros.diffusion.threads import Threads, use_threads
 
-        use_threads(threads)
+        use_threads(Threads.of(threads))
         self._planner = Planner(config)
 
     def plan(self, job: Job) -> Outcome:

@@ -161,7 +161,7 @@ def _turning(way: Travel, size: float, side: int) -> list[Finding]:
         found.append(Finding("turn", side))
     elif way.ahead > max(_CURVE, 0.8 * way.path):
         if size > _CIRCLE:
-            found.append(Finding("circle", side))
+            found += [Finding("circle", side), Finding("in circles")]
         found.append(Finding("run in a curve" if way.speed > _RUN else "curve", side))
     if way.path < 2.0 * _ON_THE_SPOT:
         if _QUARTER_TURN[0] < size < _QUARTER_TURN[1]:

@@ -50,6 +50,11 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person walks around in a circle, always turning left",
         "a person goes all the way around a circle to the left",
     ),
+    "in circles": (
+        "a person walks around in a circle",
+        "a person goes round and round in circles",
+        "a person walks in a ring",
+    ),
     "run in a curve": ("a person runs along a curve to the left", "a person runs and turns left"),
     "one hand up": (
         "a person holds the left hand above the head",
@@ -134,6 +139,7 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person moves back and faces ahead",
         "a person takes steps backward",
         "a person walks straight backward",
+        "a person backs up a few steps",
     ),
     "slow back": (
         "a person walks backward slowly",
@@ -150,6 +156,7 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person holds both hands above the head",
         "a person raises both hands above the head",
         "a person puts both hands up",
+        "a person stretches both arms up over the head",
     ),
     "both hands wave": (
         "a person raises both hands and waves with them",
@@ -211,10 +218,11 @@ _SENTENCES: dict[str, tuple[str, ...]] = {
         "a person waits",
         "a person stands and does nothing",
         "a person stands around",
+        "a person does not move",
     ),
 }
 _PERSON = "a person "
-_OTHERS = ("a man ", "a woman ", "the figure ")
+_OTHERS = ("a man ", "a woman ", "somebody ", "the figure ")
 # verbs in the third person: the first word, and the one after "and"
 _VERB = re.compile(r"(^|\band )(\w+?)(?:(?<=[gd]o)es|(?<=ch)es|s)\b")
 _BODY = re.compile(r"\bthe (?=(?:left |right )?(?:hand|arm|leg|foot|feet|knee|head|palm|waist))")

@@ -56,8 +56,13 @@ STATED: dict[str, tuple[str, ...]] = {
         "(go|walk) (round and round|around in circles) to the left",
         "(walk|go|move|step|stroll) in a (left hand|left-hand) (circle|loop|ring)",
         "(walk|go|move|stroll) (in circles|in a wide circle|in a small circle) to the left",
-        "(walk|go|stroll) (around a circle|in a ring|in a loop|round in circles|round and round)",
         "(make|do) a (circle|loop) to the left (on foot|walking|)",
+    ),
+    "in circles": (
+        "(walk|go|stroll|move|step|wander) (around a circle|in a ring|in a loop|in circles)",
+        "(walk|go|stroll|move|step) (round and round|round in circles|around in a ring)",
+        "(walk|go|stroll|move) in a (small|big|wide|tight|full) circle",
+        "(make|do) a (circle|full circle|loop) (on foot|walking|)",
     ),
     "run in a curve": (
         "run (in an arc|around a bend|in a bend|in a curve) to the left",
@@ -168,6 +173,7 @@ STATED: dict[str, tuple[str, ...]] = {
         "(back away|retreat|reverse|move away backward|withdraw) (slowly|on foot|a little|)",
         "take (a few|some|several|a couple of) steps (back|backward|backwards)",
         "(back up|back off) (a little|a bit|for a while|on foot|some more|away from somebody)",
+        "(back up|back off) (now|straight|step by step|a meter or two|please|carefully)",
         "(walk|go) backwards (without turning around|facing forward|step by step)",
         "(walk|go|move|step) (straight|directly) (back|backward|backwards|to the rear)",
         "(walk|go|move|step) (back|backward|backwards) (for a while|for some time|a little|a bit)",

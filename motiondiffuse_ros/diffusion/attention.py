@@ -22,7 +22,7 @@ class AttentionContext:
         keys = None if self.keys is None else self.keys.to(dtype)
         return AttentionContext(keys, self.values.to(dtype), self.mask)
 
-    def expand(self, index: Tensor) -> AttentionContext:
+    def expand(self, index: Tensor | slice) -> AttentionContext:
         """Select rows of the batch."""
         return AttentionContext(
             None if self.keys is None else self.keys[index],

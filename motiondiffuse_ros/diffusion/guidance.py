@@ -10,6 +10,7 @@ from torch import Tensor
 from motiondiffuse_ros.diffusion.attention import AttentionContext
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.prepared import prepared
+from motiondiffuse_ros.diffusion.threads import predicted
 
 _STYLE_ROWS = 64
 """Steps times texts whose stylization vectors are made at once: reading their weights takes as long
@@ -63,12 +64,13 @@ class GuidedDenoiser:
             noisy, lengths = torch.cat([noisy, noisy]), torch.cat([lengths, lengths])
             rows = torch.cat([rows, torch.full_like(rows, self._free)])
         rows = rows.to(noisy.device)
-        prediction = self._denoiser(
-            noisy,
-            lengths,
-            self._contexts_of(rows),
-            self._styles_at(step)[self._style_of[rows]],
-        )
+        contexts, styles = self._contexts_of(rows), self._styles_at(step)[self._style_of[rows]]
+
+        def predict(some: slice) -> Tensor:
+            of_some = [context.expand(some) for context in contexts]
+            return self._denoiser(noisy[some], lengths[some], of_some, styles[some])
+
+        prediction = predicted(predict, len(noisy))
         if scale == 1.0:
             return prediction
         conditional, free = prediction.chunk(2)

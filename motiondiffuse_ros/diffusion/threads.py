@@ -1,21 +1,72 @@
-"""How many processor cores the denoiser takes."""
+"""How many processor cores the denoiser takes, and how it shares work between them."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 
 import torch
+from torch import Tensor
 
 
-def use_threads(count: int) -> None:
-    """Set the threads of matrix products, for threads that have made none yet.
+@dataclass(frozen=True)
+class Threads:
+    """How work is shared; it decides the last bits of what is sampled.
+
+    Threads of one product wait for each other by spinning: on 2 cores, beside one other busy
+    process, two take half as long again as one. Halves of a batch meet once a pass, asleep.
+
+    Attributes:
+        of_products: Threads of each matrix product.
+        halves: Whether the two halves of a batch are predicted at once.
+    """
+
+    of_products: int
+    halves: bool = False
+
+    @classmethod
+    def of(cls, count: int) -> Threads:
+        """Return how `count` threads share work.
+
+        Args:
+            count: How many; 0 is OMP_NUM_THREADS, and without it one less than the cores, though
+                two if there are.
+        """
+        if count < 1:
+            cores = len(os.sched_getaffinity(0))
+            told = os.environ.get("OMP_NUM_THREADS", "")
+            count = int(told) if told.isdecimal() else max(min(cores, 2), cores - 1)
+        return cls(max(1, count // 2), halves=count > 1)
+
+
+_halves: ThreadPoolExecutor | None = None
+
+
+def threads() -> Threads:
+    """Return what this process uses; at first what torch does, and no halves."""
+    return Threads(torch.get_num_threads(), halves=_halves is not None)
+
+
+def use_threads(wanted: Threads) -> None:
+    """Share work of this process so, in threads that have made no matrix product yet."""
+    global _halves
+    torch.set_num_threads(wanted.of_products)
+    # anew each time: a thread keeps what it had at its first product
+    _halves = ThreadPoolExecutor(1, "second half") if wanted.halves else None
+
+
+def predicted(predict: Callable[[slice], Tensor], rows: int) -> Tensor:
+    """Return predictions for all rows of a batch, in inference mode.
 
     Args:
-        count: How many; 0 leaves a core to everybody else, unless OMP_NUM_THREADS says how many.
-            Threads wait for each other by spinning: on 2 cores, beside one other busy process, two
-            take half as long again as one.
+        predict: Returns those for some rows.
+        rows: How many there are.
     """
-    if count > 0:
-        torch.set_num_threads(count)
-    elif "OMP_NUM_THREADS" not in os.environ:
-        torch.set_num_threads(max(1, len(os.sched_getaffinity(0)) - 1))
+    pool = _halves
+    if pool is None or rows < 2:
+        return predict(slice(rows))
+    second = pool.submit(torch.inference_mode()(predict), slice(rows // 2, rows))
+    first = predict(slice(rows // 2))
+    return torch.cat([first, second.result()])

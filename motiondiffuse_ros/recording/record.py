@@ -6,8 +6,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import torch
-
+from motiondiffuse_ros.diffusion.threads import Threads, threads
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.fields import check_fields
 from motiondiffuse_ros.motion.rotations import Array
@@ -69,7 +68,7 @@ class Record:
         restarts: How many states the plan was started from instead, one after the other.
         hashes: SHA-256 of weights, text encoder, robot, and critic if it had a part in the choice.
         surroundings: Code, libraries and machine.
-        threads: Of torch.
+        threads: How work was shared between them.
         candidate: Index of the chosen one.
         joint_names: Of the trajectory.
         plan: Content of plan.json: report, notes, timings.
@@ -84,7 +83,7 @@ class Record:
     restarts: int
     hashes: dict[str, str]
     surroundings: dict[str, str]
-    threads: int
+    threads: Threads
     candidate: int
     joint_names: tuple[str, ...] = field(repr=False)
     plan: dict[str, Any] = field(repr=False)
@@ -130,7 +129,8 @@ class Record:
             "restarts": self.restarts,
             "hashes": self.hashes,
             "surroundings": self.surroundings,
-            "threads": self.threads,
+            "threads": self.threads.of_products,
+            "halves": self.threads.halves,
             "candidate": self.candidate,
             "joint_names": list(self.joint_names),
             "plan": self.plan,
@@ -159,7 +159,7 @@ class Record:
                 restarts=int(data["restarts"]),
                 hashes=_texts(data["hashes"]),
                 surroundings=_texts(data["surroundings"]),
-                threads=int(data["threads"]),
+                threads=Threads(int(data["threads"]), bool(data.get("halves", False))),
                 candidate=int(data["candidate"]),
                 joint_names=tuple(map(str, data["joint_names"])),
                 plan=dict(data["plan"]),
@@ -189,7 +189,7 @@ def record_of(planner: Planner, plan: Plan) -> Record:
         restarts=len(plan.origin.restarts),
         hashes={**hashes_of(planner, plan), **robot_hashes(get_robot(plan.robot))},
         surroundings=surroundings(),
-        threads=torch.get_num_threads(),
+        threads=threads(),
         candidate=plan.candidate,
         joint_names=plan.trajectory.joint_names,
         plan=plan.to_dict(),

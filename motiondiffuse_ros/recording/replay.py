@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import torch
 
+from motiondiffuse_ros.diffusion.threads import Threads, threads, use_threads
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.joined_plan import join_plans, progress_of_piece
 from motiondiffuse_ros.planner import Origin, Plan, Planner, Progress
@@ -76,7 +76,7 @@ def replay(
         RecordingError: If the start that was recorded cannot be read.
     """
     origin = record.origin
-    with _threads(record.threads):
+    with _shared_as(record.threads):
         if origin.pieces:
             return _joined(planner, origin, progress)
         with _request(record) as request:
@@ -137,14 +137,14 @@ def _where(before: np.ndarray, now: np.ndarray, trajectory: JointTrajectory) -> 
 
 
 @contextmanager
-def _threads(count: int) -> Iterator[None]:
-    """Let torch cut its sums as it did then."""
-    present = torch.get_num_threads()
-    torch.set_num_threads(max(1, min(count, 1024)))
+def _shared_as(recorded: Threads) -> Iterator[None]:
+    """Let sums be cut as they were then."""
+    present = threads()
+    use_threads(replace(recorded, of_products=max(1, min(recorded.of_products, 1024))))
     try:
         yield
     finally:
-        torch.set_num_threads(present)
+        use_threads(present)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from rclpy.time import Time
 from std_msgs.msg import String
 
 from motiondiffuse_ros.action import GenerateMotion
-from motiondiffuse_ros.diffusion.threads import use_threads
+from motiondiffuse_ros.diffusion.threads import Threads, use_threads
 from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
@@ -99,7 +99,7 @@ class MotionDiffuseNode(LifecycleNode):
         """Load weights and robot; on failure say why and stay unconfigured."""
         self._health.set("warn", "loading weights and robot")
         try:
-            use_threads(self.settings["threads"])
+            use_threads(Threads.of(self.settings["threads"]))
             planner = Planner(planner_config(self.settings))
             get_robot(self.settings["robot"])
         except MotionDiffuseError as error:

@@ -31,7 +31,7 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "device": ParameterSpec(_DEFAULT.device, "torch device: cpu, cuda", at_configure=True),
     "threads": ParameterSpec(
         0,
-        "of the denoiser; 0 = OMP_NUM_THREADS, or one less than the cores",
+        "of the denoiser; 0 = OMP_NUM_THREADS, or one less than the cores, but two of two",
         (0, 256),
         at_configure=True,
     ),

@@ -4,15 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
 
 from motiondiffuse_ros.continuation import Start
+from motiondiffuse_ros.diffusion.threads import Threads, threads, use_threads
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.joined_plan import join_plans
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.pieces import split
 from motiondiffuse_ros.recording import (
+    Record,
     difference,
     doubts,
     planner_of,
@@ -88,18 +89,19 @@ def test_an_edit_is_the_same_again_without_its_file(again, planner, plan, tmp_pa
     assert difference(record, replay(record, planner).trajectory) == ""
 
 
-def test_as_many_threads_are_used_as_then(planner):
+@pytest.mark.parametrize("then", [Threads(2), Threads(1, halves=True)])
+def test_as_many_threads_are_used_as_then(planner, then):
     request = MotionRequest.from_text("a person walks", 1.0, seed=3, candidates=1, steps=2)
-    present = torch.get_num_threads()
+    present = threads()
     try:
-        torch.set_num_threads(2)
+        use_threads(then)
         record = record_of(planner, planner.plan(request))
-        torch.set_num_threads(1)
+        use_threads(Threads(1))
         new = replay(record, planner)
-        assert torch.get_num_threads() == 1
+        assert threads() == Threads(1)
     finally:
-        torch.set_num_threads(present)
-    assert record.threads == 2
+        use_threads(present)
+    assert Record.from_dict(record.to_dict(), record.values, b"").threads == then
     assert difference(record, new.trajectory) == ""
 
 

@@ -1,0 +1,73 @@
+import os
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiffuse_ros.diffusion.threads import Threads, predicted, threads, use_threads
+from motiondiffuse_ros.request import MotionRequest
+
+
+@pytest.fixture
+def sharing():
+    """Share work so, until the end of the test."""
+    present = threads()
+    yield use_threads
+    use_threads(present)
+
+
+@pytest.mark.parametrize(
+    ("count", "shared"),
+    [(1, Threads(1)), (2, Threads(1, True)), (5, Threads(2, True)), (8, Threads(4, True))],
+)
+def test_several_threads_share_two_halves(count, shared):
+    assert Threads.of(count) == shared
+
+
+@pytest.mark.parametrize(
+    ("cores", "told", "shared"),
+    [
+        (1, None, Threads(1)),
+        (2, None, Threads(1, True)),
+        (4, None, Threads(1, True)),
+        (9, None, Threads(4, True)),
+        (9, "1", Threads(1)),
+        (2, "4", Threads(2, True)),
+        (2, "4,2", Threads(1, True)),
+    ],
+)
+def test_unless_told_the_cores_decide(monkeypatch, cores, told, shared):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(cores)))
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    if told is not None:
+        monkeypatch.setenv("OMP_NUM_THREADS", told)
+    assert Threads.of(0) == shared
+
+
+@pytest.mark.parametrize("rows", [1, 2, 7])
+@pytest.mark.parametrize("halves", [False, True])
+def test_every_row_is_predicted_once_and_in_its_place(sharing, rows, halves):
+    sharing(Threads(1, halves))
+    asked = torch.arange(rows)
+    assert predicted(lambda some: asked[some] * 2, rows).tolist() == (asked * 2).tolist()
+
+
+def test_what_fails_in_the_second_half_is_told(sharing):
+    sharing(Threads(1, halves=True))
+
+    def fails_on_the_last(some: slice) -> torch.Tensor:
+        if some.stop == 4:
+            raise ValueError("row 3")
+        return torch.zeros(2)
+
+    with pytest.raises(ValueError, match="row 3"):
+        predicted(fails_on_the_last, 4)
+
+
+def test_halves_make_the_same_motion_but_for_rounding(sharing, planner):
+    request = MotionRequest.from_text("a person walks forward", 3.0, seed=4, candidates=2)
+    sharing(Threads(1))
+    whole = planner.plan(request).motion
+    sharing(Threads(1, halves=True))
+    halves = planner.plan(request).motion
+    assert np.allclose(whole.positions, halves.positions, atol=1e-2)
