@@ -21,7 +21,7 @@ from motiondiffuse_ros.ros.qos import COMMANDS, LATCHED, STREAM
 
 PATIENCE = 120.0
 """For an answer [s]."""
-QUIET = 0.3
+QUIET = 1.0
 """A stream of set-points that paused for longer has ended [s]."""
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
-from diffusers.schedulers.scheduling_dpmsolver_multistep import DPMSolverMultistepScheduler
 from torch import Tensor
 
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.errors import RequestError
+from motiondiffuse_ros.light_import import without_compiler
+
+with without_compiler():
+    from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
+    from diffusers.schedulers.scheduling_dpmsolver_multistep import DPMSolverMultistepScheduler
 
 SCHEDULERS = ("ddim", "ddpm", "dpm-solver++")
 

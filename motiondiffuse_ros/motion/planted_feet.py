@@ -13,12 +13,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import roma
 import torch
 from scipy.linalg import solveh_banded
 from torch import Tensor
 from torch.nn import functional as F
 
+from motiondiffuse_ros.light_import import without_compiler
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.kinematics import CONTACT_POSITIONS, PoseStateKinematics
 from motiondiffuse_ros.motion.rotations import Array
@@ -29,6 +29,9 @@ from motiondiffuse_ros.motion.skeleton import (
     SIDES,
     TOE_HEIGHT,
 )
+
+with without_compiler():
+    import roma
 
 _CERTAIN = 0.15
 """Contact labels up to this are taken for none."""

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import torch
 
+from motiondiffuse_ros.diffusion.composition import TimedText
+from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.threads import Threads, predicted, threads, use_threads
-from motiondiffuse_ros.request import MotionRequest
+from motiondiffuse_ros.manifest import shipped
 
 
 @pytest.fixture
@@ -64,10 +66,14 @@ def test_what_fails_in_the_second_half_is_told(sharing):
         predicted(fails_on_the_last, 4)
 
 
-def test_halves_make_the_same_motion_but_for_rounding(sharing, planner):
-    request = MotionRequest.from_text("a person walks forward", 3.0, seed=4, candidates=2)
-    sharing(Threads(1))
-    whole = planner.plan(request).motion
-    sharing(Threads(1, halves=True))
-    halves = planner.plan(request).motion
-    assert np.allclose(whole.positions, halves.positions, atol=1e-2)
+def test_halves_make_the_same_motions_but_for_rounding(sharing):
+    pipeline = MotionPipeline.from_pretrained(shipped("base"))
+    text = TimedText("a person walks forward", 0, 61, ())
+    found = []
+    for halves in (False, True):
+        sharing(Threads(1, halves))
+        samples = pipeline((text,), 61, candidates=3, seed=4, blend_frames=0)
+        found.append([motion.positions for motion in samples.motions])
+    whole, halved = found
+    assert len(whole) == 3
+    assert np.allclose(whole, halved, atol=0.01)
