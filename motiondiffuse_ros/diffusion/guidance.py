@@ -10,7 +10,7 @@ from torch import Tensor
 from motiondiffuse_ros.diffusion.attention import AttentionContext
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.prepared import prepared
-from motiondiffuse_ros.diffusion.threads import predicted
+from motiondiffuse_ros.diffusion.threads import in_halves
 
 _STYLE_ROWS = 64
 """Steps times texts whose stylization vectors are made at once: reading their weights takes as long
@@ -70,7 +70,7 @@ class GuidedDenoiser:
             of_some = [context.expand(some) for context in contexts]
             return self._denoiser(noisy[some], lengths[some], of_some, styles[some])
 
-        prediction = predicted(predict, len(noisy))
+        prediction = in_halves(predict, len(noisy))
         if scale == 1.0:
             return prediction
         conditional, free = prediction.chunk(2)

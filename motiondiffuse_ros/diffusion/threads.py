@@ -57,16 +57,16 @@ def use_threads(wanted: Threads) -> None:
     _halves = ThreadPoolExecutor(1, "second half") if wanted.halves else None
 
 
-def predicted(predict: Callable[[slice], Tensor], rows: int) -> Tensor:
-    """Return predictions for all rows of a batch, in inference mode.
+def in_halves(work: Callable[[slice], Tensor], rows: int) -> Tensor:
+    """Return what is made of a batch, in inference mode; of both halves at once if that is wanted.
 
     Args:
-        predict: Returns those for some rows.
+        work: Makes it of some rows, independently of the others.
         rows: How many there are.
     """
     pool = _halves
     if pool is None or rows < 2:
-        return predict(slice(rows))
-    second = pool.submit(torch.inference_mode()(predict), slice(rows // 2, rows))
-    first = predict(slice(rows // 2))
+        return work(slice(rows))
+    second = pool.submit(torch.inference_mode()(work), slice(rows // 2, rows))
+    first = work(slice(rows // 2))
     return torch.cat([first, second.result()])

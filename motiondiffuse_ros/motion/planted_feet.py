@@ -47,6 +47,9 @@ _LIFT_FRAMES, _LIFT_WINDOW = 2.0, 5
 """Smoothing of what lifts the soles that are then still below it, and over how many frames the
 deepest of them counts."""
 
+_PACE, _PACE_FRAMES = (1.6, 2.4), 6.0
+"""Speeds of the root [m/s] at a fast walk and a slow run, and the smoothing over time they get."""
+
 _REACH = 0.2
 """Legs reach less far than this from where they were drawn, m."""
 
@@ -66,6 +69,8 @@ class PlantingWeights:
 
     Attributes:
         standing: That a foot in certain contact moves over the floor, against the others.
+        running: What is left of that in a run, whose feet stand for two or three frames: a leg that
+            is held where it was drawn sliding for as short kicks.
         own_velocity: That the reach changes, in contact or not.
         own_place: That there is any reach: a stance is shared between its start and its end.
         smooth: That the change of the reach changes, at the beginning and end of a contact.
@@ -75,6 +80,7 @@ class PlantingWeights:
     """
 
     standing: float = 10.0
+    running: float = 0.03
     own_velocity: float = 0.05
     own_place: float = 0.02
     smooth: float = 0.2
@@ -109,10 +115,18 @@ class PlantedFeet:
         shape = features.shape[:2]
         places = self._kinematics.positions(features.flatten(0, 1)).unflatten(0, shape)
         speeds = self._speeds(features, places)
-        reach = self._reach(speeds[:, :, self._feet], certain)
+        reach = self._reach(speeds[:, :, self._feet], certain * self._walking(features))
         places = self._bend(features, places, speeds, reach)
         self._level(features, places, certain)
         return features
+
+    def _walking(self, features: Tensor) -> Tensor:
+        """Return how much standing counts [C, T, 1]: 1 up to a fast walk, `running` in a run."""
+        root = features[..., self._velocities][..., [0, 2]].norm(dim=-1, keepdim=True)
+        walk, run = _PACE
+        return ((run - _smooth(root, _PACE_FRAMES)) / (run - walk)).clamp(
+            self._weights.running, 1.0
+        )
 
     def _reach(self, speeds: Tensor, certain: Tensor) -> Tensor:
         """Return how far each foot has to be moved [C, feet, T, 2], m, x and z.

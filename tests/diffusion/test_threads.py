@@ -6,7 +6,7 @@ import torch
 
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.threads import Threads, predicted, threads, use_threads
+from motiondiffuse_ros.diffusion.threads import Threads, in_halves, threads, use_threads
 from motiondiffuse_ros.manifest import shipped
 
 
@@ -48,10 +48,10 @@ def test_unless_told_the_cores_decide(monkeypatch, cores, told, shared):
 
 @pytest.mark.parametrize("rows", [1, 2, 7])
 @pytest.mark.parametrize("halves", [False, True])
-def test_every_row_is_predicted_once_and_in_its_place(sharing, rows, halves):
+def test_every_row_is_in_halves_once_and_in_its_place(sharing, rows, halves):
     sharing(Threads(1, halves))
     asked = torch.arange(rows)
-    assert predicted(lambda some: asked[some] * 2, rows).tolist() == (asked * 2).tolist()
+    assert in_halves(lambda some: asked[some] * 2, rows).tolist() == (asked * 2).tolist()
 
 
 def test_what_fails_in_the_second_half_is_told(sharing):
@@ -63,7 +63,7 @@ def test_what_fails_in_the_second_half_is_told(sharing):
         return torch.zeros(2)
 
     with pytest.raises(ValueError, match="row 3"):
-        predicted(fails_on_the_last, 4)
+        in_halves(fails_on_the_last, 4)
 
 
 def test_halves_make_the_same_motions_but_for_rounding(sharing):
