@@ -80,7 +80,7 @@ class PlantingWeights:
     """
 
     standing: float = 10.0
-    running: float = 0.03
+    running: float = 0.0
     own_velocity: float = 0.05
     own_place: float = 0.02
     smooth: float = 0.2
