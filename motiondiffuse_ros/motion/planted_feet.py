@@ -69,8 +69,6 @@ class PlantingWeights:
 
     Attributes:
         standing: That a foot in certain contact moves over the floor, against the others.
-        running: What is left of that in a run, whose feet stand for two or three frames: a leg that
-            is held where it was drawn sliding for as short kicks.
         own_velocity: That the reach changes, in contact or not.
         own_place: That there is any reach: a stance is shared between its start and its end.
         smooth: That the change of the reach changes, at the beginning and end of a contact.
@@ -80,7 +78,6 @@ class PlantingWeights:
     """
 
     standing: float = 10.0
-    running: float = 0.0
     own_velocity: float = 0.05
     own_place: float = 0.02
     smooth: float = 0.2
@@ -121,12 +118,13 @@ class PlantedFeet:
         return features
 
     def _walking(self, features: Tensor) -> Tensor:
-        """Return how much standing counts [C, T, 1]: 1 up to a fast walk, `running` in a run."""
+        """Return how much standing counts [C, T, 1]: 1 up to a fast walk, 0 in a run.
+
+        A runner's foot stands for two or three frames; a leg held over so few of them kicks.
+        """
         root = features[..., self._velocities][..., [0, 2]].norm(dim=-1, keepdim=True)
         walk, run = _PACE
-        return ((run - _smooth(root, _PACE_FRAMES)) / (run - walk)).clamp(
-            self._weights.running, 1.0
-        )
+        return ((run - _smooth(root, _PACE_FRAMES)) / (run - walk)).clamp(0.0, 1.0)
 
     def _reach(self, speeds: Tensor, certain: Tensor) -> Tensor:
         """Return how far each foot has to be moved [C, feet, T, 2], m, x and z.

@@ -6,6 +6,7 @@ import torch
 
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
+from motiondiffuse_ros.diffusion.sampler import SamplerConfig
 from motiondiffuse_ros.diffusion.threads import Threads, in_halves, threads, use_threads
 from motiondiffuse_ros.manifest import shipped
 
@@ -72,7 +73,9 @@ def test_halves_make_the_same_motions_but_for_rounding(sharing):
     found = []
     for halves in (False, True):
         sharing(Threads(1, halves))
-        samples = pipeline((text,), 61, candidates=3, seed=4, blend_frames=0)
+        samples = pipeline(
+            (text,), 61, config=SamplerConfig(), candidates=3, seed=4, blend_frames=0
+        )
         found.append([motion.positions for motion in samples.motions])
     whole, halved = found
     assert len(whole) == 3
