@@ -3,8 +3,9 @@
     python -m benchmarks.weights_card --run runs/base --out motiondiffuse_ros/weights/base
 
 Writes the checkpoint's files, training.json (settings, steps, minutes, last losses) and
-curves.png. A run that started from the weights that are there counts on from theirs. The model card
-and licence beside them are written by hand.
+curves.png. A run that started from the weights that are there counts on from theirs, and may be
+averaged with them (Wortsman et al. 2022). The model card and licence beside them are written by
+hand.
 """
 
 from __future__ import annotations
@@ -32,17 +33,24 @@ class Options:
     """Folder of the run."""
     out: Path
     """Folder of the weights."""
+    share: float = 1.0
+    """Of the run's weights; the rest is of those that are in `out`, from which it started."""
 
 
 def main() -> None:
     """Copy, summarise and draw."""
     options = tyro.cli(Options)
-    checkpoint = options.run / "checkpoint"
-    sha256 = Checkpoint.from_pretrained(checkpoint).sha256
+    checkpoint = Checkpoint.from_pretrained(options.run / "checkpoint")
     options.out.mkdir(parents=True, exist_ok=True)
     settings = json.loads((options.run / "config.json").read_text())
     earlier = _earlier(options.out, settings["started_from"])
-    shutil.copytree(checkpoint, options.out, dirs_exist_ok=True)
+    if options.share < 1.0 and not earlier:
+        raise SystemExit(f"{options.out} does not hold the weights that {options.run} started from")
+    before = Checkpoint.from_pretrained(options.out) if earlier else checkpoint
+    shutil.copytree(options.run / "checkpoint", options.out, dirs_exist_ok=True)
+    if options.share < 1.0:
+        _average(before, checkpoint, options.share)
+        before.save_pretrained(options.out)
     rows = [json.loads(line) for line in (options.run / "log.jsonl").read_text().splitlines()]
     training = [row for row in rows if "plain" in row]
     validation = [row for row in rows if "validation" in row]
@@ -56,11 +64,20 @@ def main() -> None:
         **{name: count + earlier.get(name, 0) for name, count in own.items()},
         "training_loss_plain": float(np.mean([row["plain"] for row in training[-20:]])),
         "validation_loss_plain": validation[-1]["validation"],
-        "model_sha256": sha256,
+        "share": options.share,
+        "run_sha256": checkpoint.sha256,
+        "model_sha256": Checkpoint.from_pretrained(options.out).sha256,
     }
     (options.out / "training.json").write_text(json.dumps(summary, indent=2) + "\n")
     _draw(training, validation, options.out / "curves.png")
     print(json.dumps({k: v for k, v in summary.items() if k not in ("training", "denoiser")}))
+
+
+def _average(before: Checkpoint, after: Checkpoint, share: float) -> None:
+    """Move the weights of `before` by a share of the way to those of `after`."""
+    aim = after.denoiser.state_dict()
+    moved = {k: (1.0 - share) * v + share * aim[k] for k, v in before.denoiser.state_dict().items()}
+    before.denoiser.load_state_dict(moved)
 
 
 def _earlier(out: Path, started_from: str | None) -> dict:
