@@ -50,6 +50,10 @@ deepest of them counts."""
 _PACE, _PACE_FRAMES = (1.6, 2.4), 6.0
 """Speeds of the root [m/s] at a fast walk and a slow run, and the smoothing over time they get."""
 
+_RUNNING = 0.03
+"""What standing counts in a run: feet stand for two or three frames there, and a leg that is held
+over so few of them kicks."""
+
 _REACH = 0.2
 """Legs reach less far than this from where they were drawn, m."""
 
@@ -118,13 +122,10 @@ class PlantedFeet:
         return features
 
     def _walking(self, features: Tensor) -> Tensor:
-        """Return how much standing counts [C, T, 1]: 1 up to a fast walk, 0 in a run.
-
-        A runner's foot stands for two or three frames; a leg held over so few of them kicks.
-        """
+        """Return how much standing counts [C, T, 1], by the pace of the root."""
         root = features[..., self._velocities][..., [0, 2]].norm(dim=-1, keepdim=True)
         walk, run = _PACE
-        return ((run - _smooth(root, _PACE_FRAMES)) / (run - walk)).clamp(0.0, 1.0)
+        return ((run - _smooth(root, _PACE_FRAMES)) / (run - walk)).clamp(_RUNNING, 1.0)
 
     def _reach(self, speeds: Tensor, certain: Tensor) -> Tensor:
         """Return how far each foot has to be moved [C, feet, T, 2], m, x and z.

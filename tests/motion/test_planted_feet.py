@@ -43,10 +43,10 @@ def test_feet_of_steps_that_are_too_short_stay_put_and_the_root_goes_its_way(rea
 
 
 @pytest.mark.parametrize("name", ["09_01", "dataset-2_run_normal_001"])
-def test_a_runners_feet_are_not_held(real_paths, name):
+def test_a_runners_feet_are_hardly_held(real_paths, name):
     features = _clip(real_paths, name)
     features[:, PLANAR] += [0.0, 0.8]
-    assert _slide(_planted(features)) == pytest.approx(_slide(features), rel=0.1)
+    assert 0.4 * _slide(features) < _slide(_planted(features)) < _slide(features)
 
 
 def test_no_foot_reaches_further_than_a_step():
