@@ -46,11 +46,10 @@ def main() -> None:
     earlier = _earlier(options.out, settings["started_from"])
     if options.share < 1.0 and not earlier:
         raise SystemExit(f"{options.out} does not hold the weights that {options.run} started from")
-    before = Checkpoint.from_pretrained(options.out) if earlier else checkpoint
+    average = _average(options.out, checkpoint, options.share) if options.share < 1.0 else None
     shutil.copytree(options.run / "checkpoint", options.out, dirs_exist_ok=True)
-    if options.share < 1.0:
-        _average(before, checkpoint, options.share)
-        before.save_pretrained(options.out)
+    if average is not None:
+        average.save_pretrained(options.out)
     rows = [json.loads(line) for line in (options.run / "log.jsonl").read_text().splitlines()]
     training = [row for row in rows if "plain" in row]
     validation = [row for row in rows if "validation" in row]
@@ -73,11 +72,14 @@ def main() -> None:
     print(json.dumps({k: v for k, v in summary.items() if k not in ("training", "denoiser")}))
 
 
-def _average(before: Checkpoint, after: Checkpoint, share: float) -> None:
-    """Move the weights of `before` by a share of the way to those of `after`."""
-    aim = after.denoiser.state_dict()
-    moved = {k: (1.0 - share) * v + share * aim[k] for k, v in before.denoiser.state_dict().items()}
-    before.denoiser.load_state_dict(moved)
+def _average(before: Path, after: Checkpoint, share: float) -> Checkpoint:
+    """Return the weights in `before`, moved by a share of the way to those of `after`."""
+    average, aim = Checkpoint.from_pretrained(before), after.denoiser.state_dict()
+    weights = average.denoiser.state_dict()
+    average.denoiser.load_state_dict(
+        {name: (1.0 - share) * w + share * aim[name] for name, w in weights.items()}
+    )
+    return average
 
 
 def _earlier(out: Path, started_from: str | None) -> dict:

@@ -70,7 +70,9 @@ class GuidedDenoiser:
             of_some = [context.expand(some) for context in contexts]
             return self._denoiser(noisy[some], lengths[some], of_some, styles[some])
 
-        prediction = in_halves(predict, len(noisy))
+        count = len(noisy)
+        on_cpu = noisy.device.type == "cpu"  # a GPU shares out a batch by itself
+        prediction = in_halves(predict, count) if on_cpu else predict(slice(count))
         if scale == 1.0:
             return prediction
         conditional, free = prediction.chunk(2)

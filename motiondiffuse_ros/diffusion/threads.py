@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import torch
@@ -55,6 +56,17 @@ def use_threads(wanted: Threads) -> None:
     torch.set_num_threads(wanted.of_products)
     # anew each time: a thread keeps what it had at its first product
     _halves = ThreadPoolExecutor(1, "second half") if wanted.halves else None
+
+
+@contextmanager
+def sharing(wanted: Threads) -> Iterator[None]:
+    """Share work so for a while; see `use_threads`."""
+    present = threads()
+    use_threads(wanted)
+    try:
+        yield
+    finally:
+        use_threads(present)
 
 
 def in_halves(work: Callable[[slice], Tensor], rows: int) -> Tensor:

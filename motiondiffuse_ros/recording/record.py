@@ -68,7 +68,7 @@ class Record:
         restarts: How many states the plan was started from instead, one after the other.
         hashes: SHA-256 of weights, text encoder, robot, and critic if it had a part in the choice.
         surroundings: Code, libraries and machine.
-        threads: How work was shared between them.
+        threads: How work was shared between processor cores.
         candidate: Index of the chosen one.
         joint_names: Of the trajectory.
         plan: Content of plan.json: report, notes, timings.

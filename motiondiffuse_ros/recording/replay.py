@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from motiondiffuse_ros.diffusion.threads import Threads, threads, use_threads
+from motiondiffuse_ros.diffusion.threads import sharing
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.joined_plan import join_plans, progress_of_piece
 from motiondiffuse_ros.planner import Origin, Plan, Planner, Progress
@@ -76,7 +76,8 @@ def replay(
         RecordingError: If the start that was recorded cannot be read.
     """
     origin = record.origin
-    with _shared_as(record.threads):
+    shared = replace(record.threads, of_products=max(1, min(record.threads.of_products, 1024)))
+    with sharing(shared):  # sums are cut as they were then
         if origin.pieces:
             return _joined(planner, origin, progress)
         with _request(record) as request:
@@ -134,17 +135,6 @@ def _where(before: np.ndarray, now: np.ndarray, trajectory: JointTrajectory) -> 
         f"at {rows.sum()} of {len(rows)} points from {trajectory.times[first]:.2f} s on, "
         f"by up to {np.abs(now - before).max():.3g}"
     )
-
-
-@contextmanager
-def _shared_as(recorded: Threads) -> Iterator[None]:
-    """Let sums be cut as they were then."""
-    present = threads()
-    use_threads(replace(recorded, of_products=max(1, min(recorded.of_products, 1024))))
-    try:
-        yield
-    finally:
-        use_threads(present)
 
 
 @contextmanager

@@ -7,16 +7,8 @@ import torch
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.sampler import SamplerConfig
-from motiondiffuse_ros.diffusion.threads import Threads, in_halves, threads, use_threads
+from motiondiffuse_ros.diffusion.threads import Threads, in_halves, sharing
 from motiondiffuse_ros.manifest import shipped
-
-
-@pytest.fixture
-def sharing():
-    """Share work so, until the end of the test."""
-    present = threads()
-    yield use_threads
-    use_threads(present)
 
 
 @pytest.mark.parametrize(
@@ -49,33 +41,31 @@ def test_unless_told_the_cores_decide(monkeypatch, cores, told, shared):
 
 @pytest.mark.parametrize("rows", [1, 2, 7])
 @pytest.mark.parametrize("halves", [False, True])
-def test_every_row_is_in_halves_once_and_in_its_place(sharing, rows, halves):
-    sharing(Threads(1, halves))
+def test_every_row_is_worked_on_once_and_in_its_place(rows, halves):
     asked = torch.arange(rows)
-    assert in_halves(lambda some: asked[some] * 2, rows).tolist() == (asked * 2).tolist()
+    with sharing(Threads(1, halves)):
+        assert in_halves(lambda some: asked[some] * 2, rows).tolist() == (asked * 2).tolist()
 
 
-def test_what_fails_in_the_second_half_is_told(sharing):
-    sharing(Threads(1, halves=True))
-
+def test_what_fails_in_the_second_half_is_told():
     def fails_on_the_last(some: slice) -> torch.Tensor:
         if some.stop == 4:
             raise ValueError("row 3")
         return torch.zeros(2)
 
-    with pytest.raises(ValueError, match="row 3"):
+    with sharing(Threads(1, halves=True)), pytest.raises(ValueError, match="row 3"):
         in_halves(fails_on_the_last, 4)
 
 
-def test_halves_make_the_same_motions_but_for_rounding(sharing):
+def test_halves_make_the_same_motions_but_for_rounding():
     pipeline = MotionPipeline.from_pretrained(shipped("base"))
     text = TimedText("a person walks forward", 0, 61, ())
     found = []
     for halves in (False, True):
-        sharing(Threads(1, halves))
-        samples = pipeline(
-            (text,), 61, config=SamplerConfig(), candidates=3, seed=4, blend_frames=0
-        )
+        with sharing(Threads(1, halves)):
+            samples = pipeline(
+                (text,), 61, config=SamplerConfig(), candidates=3, seed=4, blend_frames=0
+            )
         found.append([motion.positions for motion in samples.motions])
     whole, halved = found
     assert len(whole) == 3

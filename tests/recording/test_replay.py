@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motiondiffuse_ros.continuation import Start
-from motiondiffuse_ros.diffusion.threads import Threads, threads, use_threads
+from motiondiffuse_ros.diffusion.threads import Threads, sharing, threads
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import RecordingError
 from motiondiffuse_ros.joined_plan import join_plans
@@ -92,15 +92,11 @@ def test_an_edit_is_the_same_again_without_its_file(again, planner, plan, tmp_pa
 @pytest.mark.parametrize("then", [Threads(2), Threads(1, halves=True)])
 def test_as_many_threads_are_used_as_then(planner, then):
     request = MotionRequest.from_text("a person walks", 1.0, seed=3, candidates=1, steps=2)
-    present = threads()
-    try:
-        use_threads(then)
+    with sharing(then):
         record = record_of(planner, planner.plan(request))
-        use_threads(Threads(1))
+    with sharing(Threads(1)):
         new = replay(record, planner)
         assert threads() == Threads(1)
-    finally:
-        use_threads(present)
     assert Record.from_dict(record.to_dict(), record.values, b"").threads == then
     assert difference(record, new.trajectory) == ""
 
