@@ -23,7 +23,7 @@ from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
 from motiondiffuse_ros.evaluation.protocol import Protocol, evaluate_texts
 from motiondiffuse_ros.evaluation.sources import Model

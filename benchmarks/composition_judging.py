@@ -15,7 +15,7 @@ from rich.console import Console
 from benchmarks.composition_lists import Entry, Piece
 from benchmarks.composition_sampling import Composer
 from motiondiffuse_ros.corpus.store import Corpus
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import InputError
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
 from motiondiffuse_ros.evaluation.items import draw_window

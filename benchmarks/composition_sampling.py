@@ -18,7 +18,8 @@ from rich.progress import track
 from benchmarks.composition_lists import Entry
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.composition import TimedText, Window, compose
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample
+from motiondiffuse_ros.diffusion.sampler import sample
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.motion.features import REPRESENTATIONS
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import load_text_encoder
@@ -145,7 +146,7 @@ class Composer:
             frames=int(starts[-1]),
             candidates=1,
             seed=seed,
-        )[0]
+        ).features[0]
         clean = self._checkpoint.statistics.denormalise(features.numpy())
         return [clean[a:b] for a, b in pairwise(starts)]
 

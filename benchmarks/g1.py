@@ -26,7 +26,7 @@ from scipy.ndimage import uniform_filter1d
 from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.rotations import Array

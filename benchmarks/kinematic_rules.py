@@ -203,6 +203,27 @@ def jumps(times: int = 1) -> Rule:
     return Rule(f"both feet 8 cm off the floor, {times} time(s)", holds)
 
 
+def jumping_jacks(times: int = 2) -> Rule:
+    """Arms go up while legs go apart, and down while they come together, again and again.
+
+    How far real ones leave the floor says less: toes rise by 5 cm and are not off it for long.
+    """
+
+    def holds(m: Motion) -> bool:
+        wrists = np.array([height(m, f"{side}_wrist") for side in _OTHER])
+        shoulders = np.array([height(m, f"{side}_shoulder") for side in _OTHER])
+        apart = np.linalg.norm(m.joint("left_ankle") - m.joint("right_ankle"), axis=1)
+        opened = (wrists > height(m, "head")).all(axis=0) & (apart > 0.5)
+        closed = (wrists < shoulders).all(axis=0) & (apart < 0.4)
+        passed = np.where(opened, 1, np.where(closed, -1, 0))
+        passed = passed[passed != 0]
+        return int(((passed[1:] == 1) & (passed[:-1] == -1)).sum() + (passed[:1] == 1).sum()) >= (
+            times
+        )
+
+    return Rule(f"arms up with legs apart, then both down, {times} times", holds)
+
+
 def steps_in_turn(times: int) -> Rule:
     """The feet are lifted by turns."""
 

@@ -25,7 +25,7 @@ from rich.table import Table
 from benchmarks.speed_parts.document import table, write_between_marks
 from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
 from motiondiffuse_ros.evaluation.items import Item, draw_items
 from motiondiffuse_ros.evaluation.metrics import POOL, frechet_distance, pools, retrieval

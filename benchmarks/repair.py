@@ -26,7 +26,7 @@ from rich.table import Table
 from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of, shipped_evaluator
 from motiondiffuse_ros.evaluation.items import Item, draw_items
 from motiondiffuse_ros.evaluation.metrics import POOL, pools, retrieval

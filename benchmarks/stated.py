@@ -20,7 +20,7 @@ from rich.table import Table
 
 from motiondiffuse_ros.corpus.statements import sentences_by_kind, state
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.planner import shipped_weights
 
 SECONDS = 5.0

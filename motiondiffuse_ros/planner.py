@@ -20,7 +20,7 @@ from motiondiffuse_ros.continuation import (
 )
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.editing import keeps_height, kept_by
 from motiondiffuse_ros.errors import Cancelled, RequestError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
@@ -45,6 +45,7 @@ from motiondiffuse_ros.robots import (
 )
 from motiondiffuse_ros.robots.tracking_files import save_tracking_csv, save_tracking_npz
 from motiondiffuse_ros.selection import TextMatch, eligible, leading
+from motiondiffuse_ros.text.sides import with_side
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
@@ -526,7 +527,10 @@ class Planner:
 
 
 def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...], int]:
-    """Return a request's texts in frames, and the number of frames (both ends included)."""
+    """Return a request's texts in frames, and the number of frames (both ends included).
+
+    Texts are as the denoiser is told them: with a side where they leave it open (`with_side`).
+    """
     frames = round(request.total_seconds * fps) + 1
     texts = []
     for segment in request.segments:
@@ -534,7 +538,10 @@ def timeline(request: MotionRequest, fps: float) -> tuple[tuple[TimedText, ...],
         # the frame at the very end belongs to whoever ends there
         texts.append(
             TimedText(
-                segment.text.strip(), start, frames if stop >= frames - 1 else stop, segment.parts
+                with_side(segment.text.strip()),
+                start,
+                frames if stop >= frames - 1 else stop,
+                segment.parts,
             )
         )
     return tuple(texts), frames

@@ -129,6 +129,14 @@ def test_times_become_frames_with_both_ends():
     assert [(t.start, t.stop) for t in texts] == [(0, 20), (20, 41)]
 
 
+def test_a_circle_without_a_side_is_told_and_judged_with_one():
+    typed = "[0-4] walk in a circle | [4-6] a person stands"
+    request = MotionRequest.from_text(typed)
+    texts, _ = timeline(request, 20.0)
+    assert [t.text for t in texts] == ["walk in a circle to the left", "a person stands"]
+    assert request.segments[0].text == "walk in a circle"
+
+
 def test_the_root_passes_waypoints_in_motion_and_trajectory(planner):
     waypoints = (Waypoint(2.0, 1.5, 0.5), Waypoint(4.0, 2.0, 2.0, np.pi / 2))
     plan = planner.plan(

@@ -14,7 +14,7 @@ from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.diffusion.process import make_scheduler
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.planner import PlannerConfig, shipped_weights
 
 PAPER_STEPS = 1000

@@ -20,7 +20,9 @@ from motiondiffuse_ros.diffusion.constraints import (
     OnPlainFeatures,
 )
 from motiondiffuse_ros.diffusion.denoiser import Conditioning
-from motiondiffuse_ros.diffusion.sampler import Planting, SamplerConfig, sample, sample_batch
+from motiondiffuse_ros.diffusion.denoising import Planting
+from motiondiffuse_ros.diffusion.sampler import sample, sample_batch
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Representation
@@ -182,13 +184,10 @@ class MotionPipeline:
         `choose` is given the features [T, D], not normalised, that each candidate is predicted to
         have, and returns which go on.
         """
-        kept: Sequence[int] = range(candidates)
 
         def chosen(clean: torch.Tensor) -> Sequence[int]:
-            nonlocal kept
             assert choose is not None
-            kept = choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
-            return kept
+            return choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
 
         denoiser = self._checkpoint.denoiser
         windows = compose(
@@ -202,7 +201,7 @@ class MotionPipeline:
         distinct = list(dict.fromkeys(w.text for w in windows))
         every = self._condition([*distinct, ""])
         encoded = time.perf_counter()
-        features = sample(
+        sampled = sample(
             denoiser,
             windows,
             every.expand(torch.arange(len(distinct))),
@@ -218,8 +217,8 @@ class MotionPipeline:
             on_step=on_step,
             cancelled=cancelled,
         )
-        motions = tuple(map(self._decode, features))
-        return Samples(motions, tuple(kept), encoded - began, time.perf_counter() - encoded)
+        motions = tuple(map(self._decode, sampled.features))
+        return Samples(motions, sampled.candidates, encoded - began, time.perf_counter() - encoded)
 
     def batch(
         self,

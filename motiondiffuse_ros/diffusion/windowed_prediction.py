@@ -51,11 +51,9 @@ class WindowedPrediction:
         predict: Predictor,
         windows: Sequence[Window],
         *,
-        candidates: int,
         part_correction: float,
         time_correction: float,
         device: torch.device,
-        imagination: Imagination | None = None,
         text_of: Sequence[int] | None = None,
     ) -> None:
         """Lay out batches.
@@ -63,29 +61,18 @@ class WindowedPrediction:
         Args:
             predict: The denoiser.
             windows: Of the timeline; their weights sum to one.
-            candidates: Independent samples.
             part_correction: λ₁, 0 to 1.
             time_correction: λ₂, 0 to 1.
             device: Of the noisy features.
-            imagination: Of the windows, where they are denoised apart at first; λ₁ then counts
-                from where they no longer are.
             text_of: Which of the predictor's texts each window has; one each if None.
         """
         self._predict, self._windows = predict, windows
-        self._imagination = imagination
         self._text_of = range(len(windows)) if text_of is None else text_of
         self._weights = [
             torch.from_numpy(np.ascontiguousarray(w.weight, dtype=np.float32)).to(device)
             for w in windows
         ]
-        self._candidates, self._batches = candidates, self._laid_out(candidates)
         self._pulls = _pulls(windows, part_correction, time_correction, device)
-
-    def keep(self, rows: Sequence[int]) -> None:
-        """Go on with some candidates."""
-        self._candidates, self._batches = len(rows), self._laid_out(len(rows))
-        if self._imagination is not None:
-            self._imagination.keep(rows)
 
     def _laid_out(self, candidates: int) -> list[list[tuple[int, int]]]:
         rows = [(w, c) for w in range(len(self._windows)) for c in range(candidates)]
@@ -93,9 +80,16 @@ class WindowedPrediction:
         rows.sort(key=lambda row: len(self._weights[row[0]]))
         return [rows[i : i + BATCH_ROWS] for i in range(0, len(rows), BATCH_ROWS)]
 
-    def __call__(self, x: Tensor, step: int) -> Tensor:
-        """Return the prediction [C, T, D] for noisy features x [C, T, D]."""
-        added = None if self._imagination is None else self._imagination.at(step)
+    def __call__(self, x: Tensor, step: int, imagination: Imagination | None = None) -> Tensor:
+        """Return the prediction [C, T, D].
+
+        Args:
+            x: Noisy features of C candidates [C, T, D].
+            step: Diffusion step.
+            imagination: Of their windows, where they are denoised apart at first; λ₁ counts from
+                where they no longer are.
+        """
+        added = None if imagination is None else imagination.at(step)
         pulls = [pull for pull in self._pulls if added is None or pull.in_time]
         out = torch.zeros_like(x)
         if added is None and not pulls:  # no window needs another's prediction
@@ -103,7 +97,7 @@ class WindowedPrediction:
                 window = self._windows[w]
                 out[c, window.start : window.stop] += self._weights[w] * prediction
             return out
-        predictions = [x.new_empty((self._candidates, len(w), x.shape[2])) for w in self._weights]
+        predictions = [x.new_empty((len(x), len(w), x.shape[2])) for w in self._weights]
         for w, c, prediction in self._of_rows(x, step, added):
             predictions[w][c] = prediction
         for w, window in enumerate(self._windows):
@@ -116,15 +110,15 @@ class WindowedPrediction:
             apart = predictions[pull.other][:, b] - predictions[pull.one][:, a]
             lead = self._weights[pull.one][a] - self._weights[pull.other][b]
             out[:, pull.start : pull.stop] += lead * (pull.strength * apart)
-        if self._imagination is not None and added is not None:
-            self._imagination.learn(step, added, predictions, out)
+        if imagination is not None and added is not None:
+            imagination.learn(step, added, predictions, out)
         return out
 
     def _of_rows(
         self, x: Tensor, step: int, added: Sequence[Tensor | None] | None
     ) -> Iterator[tuple[int, int, Tensor]]:
         """Yield window, candidate and prediction [frames, D] of each; see `Imagination.at`."""
-        for batch in self._batches:
+        for batch in self._laid_out(len(x)):
             texts = torch.tensor([self._text_of[w] for w, _ in batch])
             lengths = torch.tensor([len(self._weights[w]) for w, _ in batch], device=x.device)
             noisy = x.new_zeros((len(batch), int(lengths.max()), x.shape[2]))

@@ -9,7 +9,7 @@ import numpy as np
 
 from motiondiffuse_ros.corpus.store import Clip, Corpus
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.evaluation.items import MIN_FRAMES, draw_window
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.text import TextEncoder

@@ -9,7 +9,7 @@ from benchmarks.composition_space import STAND_CLIP, arms_of, own_parts, splice
 from motiondiffuse_ros.corpus.captions import captions_of, read_captions, shipped_caption_files
 from motiondiffuse_ros.corpus.split import split_of
 from motiondiffuse_ros.diffusion.composition import TimedText, compose
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.evaluation.evaluator import Evaluator, shipped_evaluator
 from motiondiffuse_ros.manifest import shipped
 from motiondiffuse_ros.motion.features import PoseState

@@ -9,7 +9,8 @@ from small_denoiser import SMALL
 
 from motiondiffuse_ros.diffusion.composition import TimedText, Window, compose
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample
+from motiondiffuse_ros.diffusion.sampler import sample
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.motion.features import PoseState
 
 STATE = PoseState()
@@ -48,7 +49,7 @@ def _sample(denoiser, windows, seeds, **changes):
         frames=FRAMES,
         candidates=2,
         seed=5,
-    )
+    ).features
 
 
 def _windows(texts):

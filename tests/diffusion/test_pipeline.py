@@ -5,7 +5,7 @@ import pytest
 
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.text import load_text_encoder
 
 CONFIG = SamplerConfig(steps=2, precision="fp32")

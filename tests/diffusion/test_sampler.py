@@ -7,7 +7,8 @@ import torch
 from motiondiffuse_ros.diffusion.composition import Window
 from motiondiffuse_ros.diffusion.constraints import KeptFeatures
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig, sample, sample_batch
+from motiondiffuse_ros.diffusion.sampler import sample, sample_batch
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import Cancelled, RequestError, SamplingError
 
 
@@ -34,7 +35,7 @@ def _sample(denoiser, *, windows=None, frames=40, candidates=2, seed=0, steps=4,
         candidates=candidates,
         seed=seed,
         **callbacks,
-    )
+    ).features
 
 
 @pytest.mark.parametrize("scheduler", SCHEDULERS)
@@ -61,7 +62,7 @@ def test_two_half_weights_of_one_text_are_one_window(denoiser):
     two = sample(
         denoiser, states_equal, text.expand(torch.tensor([0, 0])), text, config, **settings
     )
-    torch.testing.assert_close(one, two, atol=1e-4, rtol=1e-4)
+    torch.testing.assert_close(one.features, two.features, atol=1e-4, rtol=1e-4)
 
 
 def test_cancel_is_asked_before_every_step(denoiser):
@@ -112,6 +113,33 @@ def test_candidates_that_go_on_become_what_they_would_have_become(denoiser, sche
     assert [x.shape for x in seen] == [(3, 40, dim)]
 
 
+def test_candidates_one_after_the_other_are_thinned_like_those_at_once(denoiser):
+    dim = denoiser.config.feature_dim
+    spans = [Window(f"text {n}", 10 * n, np.ones((10, dim))) for n in range(20)]
+    asked, seen = [], []
+
+    def two_highest(clean):
+        asked.append(len(clean))
+        heights = clean.mean(dim=(1, 2))
+        return sorted(heights.argsort(descending=True)[:2].tolist())
+
+    settings = {"windows": spans, "frames": 200, "candidates": 5, "steps": 6}
+    some = _sample(
+        denoiser,
+        choose=two_highest,
+        on_step=lambda done, total: seen.append((done, total)),
+        **settings,
+    )
+    every = _sample(denoiser, **settings)
+    assert asked == [1, 2, 3, 3, 3]
+    assert len(some) == 2
+    which = [[torch.allclose(a, b, atol=1e-4) for b in every].index(True) for a in some]
+    assert which == sorted(set(which))
+    done = [d for d, _ in seen]
+    assert done == sorted(done)
+    assert done[-1] == seen[-1][1] == 30
+
+
 def test_values_that_are_not_finite_are_an_error(denoiser):
     with torch.no_grad():
         denoiser.head.out.bias.fill_(float("nan"))
@@ -146,7 +174,7 @@ def test_one_text_without_constraints_is_plain_sampling(denoiser):
     batch = sample_batch(denoiser, lengths, text, free, config, seed=0)
     window = [Window("a", 0, np.ones((40, denoiser.config.feature_dim)))]
     alone = sample(denoiser, window, text, free, config, frames=40, candidates=1, seed=0)
-    assert torch.equal(batch, alone)  # to the bit: there is nothing to compose
+    assert torch.equal(batch, alone.features)  # to the bit: there is nothing to compose
 
 
 @pytest.mark.parametrize("scheduler", SCHEDULERS)

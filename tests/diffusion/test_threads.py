@@ -6,7 +6,7 @@ import torch
 
 from motiondiffuse_ros.diffusion.composition import TimedText
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.diffusion.threads import Threads, in_halves, sharing
 from motiondiffuse_ros.manifest import shipped
 

@@ -20,7 +20,6 @@ def _predict(texts, values, *, part_correction=0.0, time_correction=0.0, frames=
     predict = WindowedPrediction(
         lambda noisy, step, lengths, rows: constants[rows][:, None, None].expand_as(noisy),
         windows,
-        candidates=2,
         part_correction=part_correction,
         time_correction=time_correction,
         device=torch.device("cpu"),

@@ -2,7 +2,7 @@ import pytest
 import torch
 
 from motiondiffuse_ros.diffusion.process import denoising_steps
-from motiondiffuse_ros.diffusion.sampler import SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
 
 
