@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion.rotations import Array
 
@@ -29,28 +30,32 @@ def self_overlap(model: mujoco.MjModel, qpos: Array) -> tuple[Array, list[str]]:
     depths, who = np.zeros(len(qpos)), [""] * len(qpos)
     for i, state in enumerate(qpos):
         data.qpos = state
-        for depth, pair in _overlaps(model, data):
-            if depth > max(depths[i], TOLERANCE) and pair not in usual:
-                depths[i] = depth
-                who[i] = " and ".join(model.body(body).name for body in pair)
+        overlap, pairs = _overlaps(model, data)
+        unusual = np.where(usual[pairs], 0.0, overlap)
+        if len(unusual) and unusual.max() > TOLERANCE:
+            deepest = int(unusual.argmax())
+            depths[i] = unusual[deepest]
+            pair = divmod(int(pairs[deepest]), model.nbody)
+            who[i] = " and ".join(model.body(body).name for body in pair)
     return depths, who
 
 
 @lru_cache(maxsize=8)
-def _overlaps_at_rest(model: mujoco.MjModel) -> frozenset[tuple[int, int]]:
-    data = mujoco.MjData(model)
-    return frozenset(pair for _, pair in _overlaps(model, data))
+def _overlaps_at_rest(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Return which pairs do [nbody * nbody]."""
+    usual = np.zeros(model.nbody**2, dtype=bool)
+    usual[_overlaps(model, mujoco.MjData(model))[1]] = True
+    return usual
 
 
-def _overlaps(model: mujoco.MjModel, data: mujoco.MjData) -> list[tuple[float, tuple[int, int]]]:
+def _overlaps(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Array, NDArray[np.intp]]:
+    """Return the depths [N] of all overlaps, m, and their bodies a < b as a * nbody + b."""
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     mujoco.mj_collision(model, data)
     if not data.ncon:
-        return []
-    bodies = np.sort(model.geom_bodyid[data.contact.geom], axis=1)
-    own = (bodies[:, 0] > 0) & (data.contact.dist < 0.0)
-    return [
-        (float(-depth), (int(a), int(b)))
-        for depth, (a, b) in zip(data.contact.dist[own], bodies[own], strict=True)
-    ]
+        return np.empty(0), np.empty(0, dtype=np.intp)
+    one, other = model.geom_bodyid[data.contact.geom].T
+    depth, first = -data.contact.dist, np.minimum(one, other)
+    own = (first > 0) & (depth > 0.0)
+    return depth[own], (first * model.nbody + np.maximum(one, other))[own].astype(np.intp)

@@ -9,9 +9,13 @@ from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import convolve1d, maximum_filter1d
 
 from motiondiffuse_ros.motion.rotations import Array
+from motiondiffuse_ros.motion.spans import pieces
 
 _STEP = 0.005
 _HALO = 0.1
+_KNOTS = 4096
+"""Looked at together: speeds of all joints at all knots of a long path would take the most memory
+of all."""
 
 
 def slow_down(
@@ -29,7 +33,8 @@ def slow_down(
         Where no joint is too fast the path keeps its pace.
     """
     knots = np.linspace(0.0, end, max(2, round(end / _STEP) + 1))
-    excess = np.max(np.abs(path(knots, 1)) / limits, axis=1)
+    some = (knots[at] for at in pieces(len(knots), _KNOTS))
+    excess = np.concatenate([np.max(np.abs(path(at, 1)) / limits, axis=1) for at in some])
     pace = np.maximum(1.0, excess)
     # widen, then smooth over the same width: never below what is needed, and C1
     width = 2 * max(1, round(_HALO / _STEP)) + 1

@@ -22,6 +22,11 @@ def quantile(values: Array, *shares: float) -> Array:
     return np.interp(places, np.arange(len(ordered)), ordered)
 
 
+def median(values: Array) -> float:
+    """Return the median of all values, of which there is one or more."""
+    return float(quantile(values, 50)[0])
+
+
 def quantiles(name: str, values: Array, *shares: int) -> dict[str, float]:
     """Return quantiles [percent] under names that end in them."""
     found = quantile(values, *shares)

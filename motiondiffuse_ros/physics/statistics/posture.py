@@ -11,7 +11,7 @@ from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import SIDES
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import in_heading, planted, quantiles
+from motiondiffuse_ros.physics.statistics.frames import in_heading, median, planted, quantiles
 
 _UP, _AHEAD = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
 _TRUNK = ("pelvis", "spine3", "head")
@@ -97,7 +97,7 @@ def _centre_over_feet(states: BodyStates, dynamics: Dynamics, heading: Array) ->
     away = dynamics.centre - feet
     ahead, aside, _ = in_heading(heading[1:-1], away).T
     return {
-        "centre_ahead_median": float(np.median(ahead)),
+        "centre_ahead_median": median(ahead),
         "centre_aside_median": float(abs(np.median(aside))),
         "centre_ahead_mean": float(ahead.mean()),
         "centre_aside_mean": float(abs(aside.mean())),

@@ -6,7 +6,7 @@ import numpy as np
 
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import log_of, quantile, worst_window
+from motiondiffuse_ros.physics.statistics.frames import log_of, median, quantile, worst_window
 
 _STILL = 0.04  # m/s, mean over the joints
 _WINDOW = 6  # frames
@@ -27,7 +27,7 @@ def stillness(states: BodyStates, dynamics: Dynamics) -> dict[str, float]:
     return {
         **{name: float(v[still].mean()) if still.any() else 0.0 for name, v in figures.items()},
         **_stops(steps, dynamics, states.fps),
-        "stillness_50": log_of(float(np.median(speed)), 0.01),
+        "stillness_50": log_of(median(speed), 0.01),
         "off_support_90": float(quantile(outside, 90)[0]),
         "off_next_step_mean": float(np.maximum(np.nan_to_num(off.from_next_step), 0.0).mean()),
         "off_next_step_worst": worst_window(np.maximum(np.nan_to_num(off.from_next_step), 0.0), 5),

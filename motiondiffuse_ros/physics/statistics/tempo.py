@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from motiondiffuse_ros.motion import CANONICAL, Motion
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.body_states import BodyStates
-from motiondiffuse_ros.physics.statistics.frames import log_of, quantile
+from motiondiffuse_ros.physics.statistics.frames import log_of, median, quantile
 
 _GROUPS = {
     "hands": ("left_wrist", "right_wrist"),
@@ -56,8 +56,8 @@ def _pace(name: str, places: Array, fps: float) -> dict[str, float]:
         f"{name}_speed": log_of(v, 0.02),
         f"{name}_acceleration_over_speed": float(np.log((a + 0.2) / (v + 0.05))),
         f"{name}_jerk_over_acceleration": float(np.log((j + 4.0) / (a + 0.5))),
-        f"{name}_acceleration_50": log_of(float(np.median(acceleration)), 0.1),
-        f"{name}_jerk_50": log_of(float(np.median(jerk)), 2.0),
+        f"{name}_acceleration_50": log_of(median(acceleration), 0.1),
+        f"{name}_jerk_50": log_of(median(jerk), 2.0),
         f"{name}_speed_90": log_of(_upper(speed.max(axis=1)), 0.05),
         f"{name}_acceleration_90": log_of(_upper(acceleration.max(axis=1)), 0.3),
         f"{name}_jerk_peak_over_usual": float(
@@ -76,7 +76,7 @@ def _whole_body(motion: Motion) -> dict[str, float]:
     stops = np.log((speed[:-1] + 0.02) / (after[1:-1] + 0.02))
     starts = np.log((after[1:-1] + 0.02) / (speed[:-1] + 0.02))
     return {
-        "jerk_50": log_of(float(np.median(jerk)), 20.0),
+        "jerk_50": log_of(median(jerk), 20.0),
         "jerk_90": log_of(_upper(jerk), 20.0),
         "jerk_100": log_of(float(jerk.max()), 20.0),
         "sudden_stop": float(stops.max()),
@@ -107,7 +107,7 @@ def _spectrum(name: str, angles: Array, fps: float) -> dict[str, float]:
         **shares,
         f"{name}_amplitude": log_of(float(np.std(angles, axis=0).max()), 0.02),
         f"{name}_turning_speed_90": log_of(_upper(fastest), 0.1),
-        f"{name}_turning_speed_50": log_of(float(np.median(fastest)), 0.1),
+        f"{name}_turning_speed_50": log_of(median(fastest), 0.1),
     }
 
 
