@@ -1,7 +1,9 @@
 """Prompts as people type them, each with what must then be seen.
 
 None of them is a caption of the corpus or a statement (tests/benchmarks checks the shipped ones),
-and none was used to choose weights or settings.
+and none was used to choose weights or settings. Rules are not made to fit what comes, but one was
+changed after it was seen to fail on recorded motion: jumping jacks were asked to leave the floor by
+8 cm twice, which of the training clips' 17 windows of them, but for those of one subject, 1 does.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from benchmarks.kinematic_rules import (
     hands_meet,
     is_lively,
     is_still,
+    jumping_jacks,
     jumps,
     keeps_heading,
     limb_leads,
@@ -93,7 +96,7 @@ FREE_PROMPTS: dict[str, Rule] = {
     "jump once": jumps(),
     "jump up and down": jumps(2),
     "leap ahead once": jumps() & goes_ahead(0.4),
-    "do jumping jacks": jumps(2) & both_hands_up(),
+    "do jumping jacks": jumping_jacks(),
     "hop on one leg": jumps(2),
     # posture
     "bow before the audience": nods_down(0.15) & stays(),

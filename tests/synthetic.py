@@ -39,6 +39,17 @@ def waving(frames: int = 60, fps: float = FPS) -> Motion:
     return Motion(still.root, rotations, fps)
 
 
+def jumping_jack(times: int, arms: float = 1.0, legs: float = 1.0) -> Motion:
+    """Stand, and bring arms up and legs apart and back, once a second, in shares of all the way."""
+    still = standing(round(times * FPS) + 1)
+    rotations = still.rotations.copy()
+    out = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(still.frames) / FPS)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        turned(rotations, f"{side}_shoulder", 0, 2.6 * sign * arms * out)
+        turned(rotations, f"{side}_hip", 0, 0.4 * sign * legs * out)
+    return Motion(still.root, rotations, FPS)
+
+
 @st.composite
 def smooth_motions(draw: st.DrawFn, max_amplitude: float = 1.2) -> Motion:
     """Any smooth motion: a few sines a joint about random axes, 1 to 80 frames."""

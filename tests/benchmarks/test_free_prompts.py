@@ -1,5 +1,5 @@
 import pytest
-from synthetic import standing, waving
+from synthetic import jumping_jack, standing, waving
 
 from benchmarks.free_prompts import FREE_PROMPTS
 from benchmarks.kinematic_rules import (
@@ -7,6 +7,7 @@ from benchmarks.kinematic_rules import (
     goes_ahead,
     hand_up,
     is_still,
+    jumping_jacks,
     nods_down,
     speed_is,
     turns,
@@ -58,3 +59,10 @@ def test_a_side_is_not_the_other_one():
     motion = waving(60)
     assert hand_up("right").holds(motion) == hand_up("left").holds(motion.mirrored())
     assert not (hand_up("right").holds(motion) and hand_up("left").holds(motion))
+
+
+def test_jumping_jacks_take_arms_and_legs_more_than_once():
+    assert jumping_jacks(2).holds(jumping_jack(times=3))
+    assert not jumping_jacks(2).holds(jumping_jack(times=1))
+    assert not jumping_jacks(1).holds(jumping_jack(times=3, legs=0.0))
+    assert not jumping_jacks(1).holds(jumping_jack(times=3, arms=0.0))
