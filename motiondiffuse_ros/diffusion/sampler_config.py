@@ -49,7 +49,7 @@ class SamplerConfig:
     time_correction: float = 0.5
     apart_above: float = 0.0
     planted_below: float = 0.5
-    thinned_below: float = 0.95
+    thinned_below: float = 0.97
     precision: str = "auto"
 
     def validate(self) -> None:
