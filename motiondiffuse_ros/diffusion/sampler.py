@@ -81,7 +81,6 @@ def sample(
     """
     config.validate()
     generator = torch.Generator().manual_seed(seed)
-    noise = _noise((candidates, frames, denoiser.config.feature_dim), generator)
     predict = WindowedPrediction(
         _guided(denoiser, config, conditioning, unconditional),
         windows,
@@ -111,9 +110,10 @@ def sample(
         gone += 1
 
     for first in groups:
+        count = min(size, candidates - first)
         run = Denoising(
             predict,
-            noise[first : first + size],
+            _noise((count, frames, denoiser.config.feature_dim), generator),
             denoiser,
             config,
             generator,
