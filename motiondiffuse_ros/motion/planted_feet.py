@@ -50,7 +50,7 @@ deepest of them counts."""
 _PACE, _PACE_FRAMES = (1.6, 2.4), 6.0
 """Speeds of the root [m/s] at a fast walk and a slow run, and the smoothing over time they get."""
 
-_RUNNING = 0.03
+_RUNNING = 0.05
 """What standing counts in a run: feet stand for two or three frames there, and a leg that is held
 over so few of them kicks."""
 
