@@ -14,7 +14,7 @@ goes on the same way round."""
 
 _CIRCLE = re.compile(
     r"\b(?:(?:in|around|round|along|a|one|two|three|several|some|the)\s+"
-    r"(?:(?:a|the|full|whole|complete|small|little|tiny|big|large|huge|wide|tight|perfect)\s+)*"
+    r"(?:(?:a|the|full|whole|complete|small|little|tiny|big|large|huge|wide|tight|perfect)\s+){0,4}"
     r"(?:circles?|loops?|rings?|circular\s+(?:path|way|route|motion))|round\s+and\s+round|"
     r"circl(?:e|es|ing)\s+(?:a?round|about))\b",
     re.IGNORECASE,
