@@ -46,7 +46,7 @@ def test_feet_of_steps_that_are_too_short_stay_put_and_the_root_goes_its_way(rea
 def test_a_runners_feet_are_hardly_held(real_paths, name):
     features = _clip(real_paths, name)
     features[:, PLANAR] += [0.0, 0.8]
-    assert 0.4 * _slide(features) < _slide(_planted(features)) < _slide(features)
+    assert 0.25 * _slide(features) < _slide(_planted(features)) < _slide(features)
 
 
 def test_no_foot_reaches_further_than_a_step():

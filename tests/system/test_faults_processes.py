@@ -122,7 +122,7 @@ def test_200_cycles_of_configure_and_cleanup_and_weights_of_the_wrong_shape(grap
             assert operator.change(Transition.TRANSITION_CLEANUP)
             memory.append(resident_bytes(process.pid))
         # single figures differ by 100 MB, by whether the weights before are collected yet
-        assert np.median(memory[150:]) - np.median(memory[50:100]) < 50e6
+        assert min(memory[150:]) - min(memory[50:100]) < 20e6
         assert operator.state() == State.PRIMARY_STATE_UNCONFIGURED
         assert operator.change(Transition.TRANSITION_CONFIGURE)
         assert operator.change(Transition.TRANSITION_ACTIVATE)
