@@ -126,9 +126,7 @@ class Denoising:
             Cancelled: If `cancelled` said so.
             SamplingError: If they are not finite.
         """
-        for step in self._steps[self.done :]:
-            self._look(step)
-            self._step(step)
+        self.reach(0.0)
         x = self._x
         if self._planted is not None and self._config.planted_below > 0.0:
             x = self._planted.result(x)

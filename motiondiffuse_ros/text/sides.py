@@ -12,17 +12,18 @@ _SIDE = "to the left"
 """Towards positive yaw (REP-103). Always the same, so that a motion that goes on with the same text
 goes on the same way round."""
 
+_CIRCLING = r"circl(?:e|es|ing)\s+(?:a?round|about)"
 _CIRCLE = re.compile(
     r"\b(?:(?:in|around|round|along|a|one|two|three|several|some|the)\s+"
     r"(?:(?:a|the|full|whole|complete|small|little|tiny|big|large|huge|wide|tight|perfect)\s+){0,4}"
     r"(?:circles?|loops?|rings?|circular\s+(?:path|way|route|motion))|round\s+and\s+round|"
-    r"circl(?:e|es|ing)\s+(?:a?round|about))\b",
+    rf"{_CIRCLING})\b",
     re.IGNORECASE,
 )
 _TRAVELS = re.compile(
     r"\b(?:walk|run|runn|jog|jogg|pac|stroll|march|wander|ambl|sneak|limp|tiptoe|skip|skipp|hop|"
     r"hopp|gallop|stagger|trot|trott|sprint|strut|shuffl|crawl|creep)(?:e|s|es|ing|ed)?\b|"
-    r"\bcircl(?:e|es|ing)\s+(?:a?round|about)\b",
+    rf"\b{_CIRCLING}\b",
     re.IGNORECASE,
 )
 _MOVES = re.compile(

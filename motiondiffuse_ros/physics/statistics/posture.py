@@ -87,7 +87,7 @@ def _resting_foot(
     ahead, aside, _ = in_heading(heading, normal)[rest].mean(axis=0)
     tilt_x, tilt_y, _ = normal[rest].mean(axis=0)
     heights = sole[rest][..., 2]
-    uneven, height = np.median(np.ptp(heights, axis=1)), np.median(heights.min(axis=1))
+    uneven, height = median(np.ptp(heights, axis=1)), median(heights.min(axis=1))
     x, y, _ = toes.mean(axis=0)
     return (*map(float, (ahead, aside, tilt_x, tilt_y, uneven, height, np.arctan2(y, x))),)
 
@@ -98,11 +98,11 @@ def _centre_over_feet(states: BodyStates, dynamics: Dynamics, heading: Array) ->
     ahead, aside, _ = in_heading(heading[1:-1], away).T
     return {
         "centre_ahead_median": median(ahead),
-        "centre_aside_median": float(abs(np.median(aside))),
+        "centre_aside_median": abs(median(aside)),
         "centre_ahead_mean": float(ahead.mean()),
         "centre_aside_mean": float(abs(aside.mean())),
         "centre_off_mean": float(np.linalg.norm(away[:, :2].mean(axis=0))),
-        "centre_off_median": float(np.median(np.linalg.norm(away[:, :2], axis=1))),
+        "centre_off_median": median(np.linalg.norm(away[:, :2], axis=1)),
     }
 
 
@@ -126,5 +126,5 @@ def _legs(motion: Motion, states: BodyStates) -> dict[str, float]:
     names = list(states.joint_names)
     for hinge in _LEG_HINGES:
         left, right = (states.qpos[:, 7 + names.index(f"{side}_{hinge}")] for side in SIDES)
-        out[f"{hinge}_left_minus_right"] = float(np.median(left) - np.median(right))
+        out[f"{hinge}_left_minus_right"] = median(left) - median(right)
     return out
