@@ -41,9 +41,10 @@ _STEP_LENGTH, _STANDING = (0.25, 0.9), 0.9  # m, share of the window
 _KNEELING, _KNEELING_UPRIGHT = 0.2, np.cos(np.radians(50.0))  # m, knee over the floor
 _FULL_TURN = np.radians((300.0, 430.0))
 _LEAP, _KNEE_UP, _LEG_STRAIGHT = 0.4, 0.2, 0.3  # m ahead, m of a knee below its hip
+_LIFTS = 0.4  # times a second, of each knee
 _HEEL_UP, _TIPTOEING = 0.1, 0.6  # m over the toes, share of the window
 _CLAP, _PARTING, _CLAPS = 0.2, 0.12, 3  # m between the wrists, m further between claps, times
-_LEGS = (0.35, 0.5)  # m between the ankles: together, apart
+_LEGS, _JACKS = (0.35, 0.5), 0.45  # m between the ankles: together, apart; times a second
 _SEAT, _SEAT_BEHIND, _SITTING = (0.3, 0.75), 0.15, 0.7  # m, m behind the heels, s
 
 FEW_STEPS = range(2, 6)
@@ -90,7 +91,7 @@ def findings(features: Array, representation: Representation, fps: float) -> lis
     if body.upright.min() > _UPRIGHT:
         feet = features[:, groups["contacts"]] > 0.5
         found += _travelling(way, _walks(feet), feet)
-        if _marches(body):
+        if _marches(body, fps):
             if Finding("on the spot") in found:
                 found.append(Finding("march"))
             elif way.straight > 0 and _MOVING < way.speed < 0.8 * _RUN:
@@ -283,7 +284,7 @@ def _jumps(body: _Body, way: Travel, fps: float) -> list[Finding]:
             upright = body.upright.min() > _UPRIGHT
             return [Finding("hops", side)] if upright and times > 1 else []
     found = [Finding("jump")]
-    if times > 1 and way.path < 2.0 * _ON_THE_SPOT and _jumping_jacks(body):
+    if times > 1 and way.path < 2.0 * _ON_THE_SPOT and _jumping_jacks(body, fps):
         found.append(Finding("jumping jacks"))
     if times > 2:
         found.append(Finding("jumps"))
@@ -292,8 +293,8 @@ def _jumps(body: _Body, way: Travel, fps: float) -> list[Finding]:
     return found
 
 
-def _jumping_jacks(body: _Body) -> bool:
-    """Whether arms go up while legs go apart, and down while they come together, twice or more."""
+def _jumping_jacks(body: _Body, fps: float) -> bool:
+    """Whether arms go up while legs go apart, and down while they come together, all the time."""
     sides = ("left", "right")
     wrists = [body.level(f"{side}_wrist") for side in sides]
     up = np.min(wrists, axis=0) > body.level("head")
@@ -301,7 +302,7 @@ def _jumping_jacks(body: _Body) -> bool:
     apart = np.linalg.norm(body.place("left_ankle") - body.place("right_ankle"), axis=-1)
     opened = sum(apart[start:stop].max() > _LEGS[1] for start, stop in runs(up))
     closed = sum(apart[start:stop].min() < _LEGS[0] for start, stop in runs(down))
-    return min(opened, closed) > 1
+    return min(opened, closed) >= max(2, _JACKS * len(up) / fps)
 
 
 def _claps(body: _Body) -> bool:
@@ -315,14 +316,14 @@ def _claps(body: _Body) -> bool:
     return int((chest & level)[meet].sum()) >= _CLAPS
 
 
-def _marches(body: _Body) -> bool:
-    """Whether both knees come up nearly to the hips by turns, each of them more than once."""
+def _marches(body: _Body, fps: float) -> bool:
+    """Whether both knees come up nearly to the hips by turns, all the time."""
     below = [body.level(f"{side}_hip") - body.level(f"{side}_knee") for side in ("left", "right")]
     lifts = [
         len(runs((own < _KNEE_UP) & (other > _LEG_STRAIGHT)))
         for own, other in (below, reversed(below))
     ]
-    return min(lifts) > 1
+    return min(lifts) >= max(2, _LIFTS * len(body.height) / fps)
 
 
 def _tiptoes(body: _Body) -> bool:

@@ -369,7 +369,7 @@ DONE: dict[str, tuple[str, ...]] = {
         "(climb|go up|walk up|ascend|take) (the stairs|some steps|a staircase|stairs)",
         "(step|climb) up",
     ),
-    r"(does jumping jacks?.*|.*jumping jacks.*)": (
+    r"[^,]*\bjumping jacks\b[^,]*": (  # alone: nothing else is done before or after
         "(do|perform) (jumping jacks|star jumps|some jumping jacks)",
         "(exercise|warm up) with jumping jacks",
     ),
@@ -572,7 +572,7 @@ _HISSING = ("s", "sh", "ch", "x", "z", "o")
 _DOUBLED = re.compile(r"(?:(?:qu|[^aeiou])*[aeiou][^aeiouwxy]|.*step|control)")
 _LATER_VERBS = ("straighten", "come", "bear", "rise", "drink", "hold", "put")
 _OF_A_KIND = 128
-_OF_A_CLIP = 3
+_OF_A_CLIP = 48
 
 
 def wordings(kind: str) -> tuple[str, ...]:
@@ -586,7 +586,7 @@ def wordings(kind: str) -> tuple[str, ...]:
 
 @cache  # asked whenever a window is drawn
 def wordings_of_clip(name: str, texts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return a few other words for what is done in a clip, always the same.
+    """Return some other words for what is done in a clip, always the same.
 
     Args:
         name: Of the clip; clips of the same deed get different ones.

@@ -21,7 +21,7 @@ from motiondiffuse_ros.evaluation.config import EvaluatorConfig, EvaluatorTraini
 from motiondiffuse_ros.evaluation.evaluator import Evaluator
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
 from motiondiffuse_ros.text import TextEncoder
-from motiondiffuse_ros.training.texts import CaptionStates, all_captions, texts_of
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of, texts_of
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
 _ALIKE = 0.9
@@ -55,7 +55,9 @@ def train_evaluator(
     fresh = isinstance(begin, EvaluatorConfig)
     config = begin if fresh else begin.network.config
     network = TextMotionNetwork(config) if fresh else deepcopy(begin.network)
-    windows = _windows(corpus, clips, config, training, training.statements)
+    windows = _windows(
+        *(corpus, clips, config, training, training.statements), other_words=other_words_of
+    )
     captions = CaptionStates(all_captions(clips, windows.stated_texts()), encoder)
 
     def pair_loss(batch: WindowBatch) -> Tensor:
@@ -134,6 +136,7 @@ def _windows(
     training: EvaluatorTraining,
     statements: float,
     texts: Callable[[Clip], Sequence[str]] = texts_of,
+    other_words: Callable[[Clip], Sequence[str]] = lambda clip: (),
 ) -> WindowSampler:
     return WindowSampler(
         corpus,
@@ -142,6 +145,7 @@ def _windows(
         mirror=0.5,
         statements=statements,
         texts=texts,
+        other_words=other_words,
         seed=training.seed,
     )
 

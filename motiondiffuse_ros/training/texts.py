@@ -45,13 +45,13 @@ class CaptionStates:
 
 
 def texts_of(clip: Clip) -> tuple[str, ...]:
-    """Return what may be said of a clip.
+    """Return what is said of a clip: its captions and, if it has one, its action label."""
+    return *clip.captions, *named_deeds(clip)[1:]
 
-    Its captions, where its name has one the words of its action label, and some other words for
-    what they say.
-    """
-    deeds = named_deeds(clip)
-    return *clip.captions, *deeds[1:], *wordings_of_clip(clip.name, deeds)
+
+def other_words_of(clip: Clip) -> tuple[str, ...]:
+    """Return other words for what is done in a clip."""
+    return wordings_of_clip(clip.name, named_deeds(clip))
 
 
 def named_deeds(clip: Clip) -> tuple[str, ...]:
@@ -63,13 +63,14 @@ def named_deeds(clip: Clip) -> tuple[str, ...]:
 def all_captions(clips: Iterable[Clip], statements: Iterable[str]) -> set[str]:
     """Return every text that training may show.
 
-    Captions and action labels, with their sides, statements, the mirror images of all and the empty
-    text.
+    Captions, action labels and other words, with their sides, statements, the mirror images of all
+    and the empty text.
 
     Args:
         clips: That are shown.
         statements: That may be drawn (`WindowSampler.stated_texts`).
     """
-    texts = {form for clip in clips for text in texts_of(clip) for form in forms_of(text)}
+    said = (text for clip in clips for text in (*texts_of(clip), *other_words_of(clip)))
+    texts = {form for text in said for form in forms_of(text)}
     texts |= set(statements)
     return texts | {mirror_caption(text) for text in texts} | {""}

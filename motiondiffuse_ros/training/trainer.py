@@ -30,7 +30,7 @@ from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
 from motiondiffuse_ros.training.ranks import ALONE, Ranks
 from motiondiffuse_ros.training.text_to_prediction import TextToPrediction
-from motiondiffuse_ros.training.texts import CaptionStates, all_captions
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
 STATE_FILE = "training_state.pt"
@@ -121,6 +121,7 @@ class Trainer:
         settings = {
             "max_frames": denoiser_config.max_frames,
             "mirror": config.mirror,
+            "other_words": other_words_of,
         }
         windows = WindowSampler(
             corpus,

@@ -20,6 +20,7 @@ _BUCKET_BATCHES = 8
 _LENGTH_STEP = 28
 _STATED_SECONDS = (3.0, 5.0, 8.0)
 _CROP_SECONDS = 4.0
+_OTHER_WORDS = 3
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,9 @@ class WindowSampler:
     Most come with a caption of their clip, a share of `statements` with what their kinematics
     state for certain; of those each kind of statement is as frequent as any other, and walking
     backward is half of the time walking forward played in reverse. A share of `deeds` comes with a
-    caption, too, but each deed that `corpus.wordings` knows is as frequent as any other. Of clips
+    caption, too, but each deed that `corpus.wordings` knows is as frequent as any other. Beside its
+    captions a clip comes with a few other words, other ones each time: words that always come with
+    the same clip would stand for that clip. Of clips
     that do not fit into a window a share of `crop` is shown in shorter pieces: their captions speak
     of the whole clip, so that no piece fits better than another, and people ask for any length.
     """
@@ -71,6 +74,7 @@ class WindowSampler:
         deeds: float = 0.0,
         crop: float = 0.0,
         texts: Callable[[Clip], Sequence[str]] = texts_of,
+        other_words: Callable[[Clip], Sequence[str]] = lambda clip: (),
         seed: int,
     ) -> None:
         """Prepare to draw.
@@ -83,10 +87,11 @@ class WindowSampler:
             statements: Share of windows with a statement for a text.
             deeds: Share of windows drawn by what is done in their clips.
             crop: Share of windows of long clips that are shorter than they could be.
-            texts: What may be said of a clip.
+            texts: What is said of a clip.
+            other_words: Of which a few are said of it, too.
             seed: Of the draws.
         """
-        self._texts = texts
+        self._texts, self._other_words = texts, other_words
         self._corpus, self._clips, self._max_frames = corpus, clips, max_frames
         self._mirror, self._statements, self._deeds, self._crop = mirror, statements, deeds, crop
         self._shortest = min(round(_CROP_SECONDS * corpus.fps), max_frames)
@@ -133,9 +138,13 @@ class WindowSampler:
         features = corpus.of(clip)[start : start + frames]
         texts = (
             name_side(text, features, corpus.representation, corpus.fps)
-            for text in self._texts(clip)
+            for text in (*self._texts(clip), *self._few_other_words(clip))
         )
         return _Window(clip, start, frames, tuple(texts))
+
+    def _few_other_words(self, clip: Clip) -> list[str]:
+        every = self._other_words(clip)
+        return [every[i] for i in self._rng.permutation(len(every))[:_OTHER_WORDS]]
 
     def _draw_stated(self) -> _Window:
         of_kind = self._stated[self._rng.integers(len(self._stated))]

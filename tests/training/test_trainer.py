@@ -15,6 +15,7 @@ from motiondiffuse_ros.errors import CheckpointError, InputError
 from motiondiffuse_ros.motion.features import REPRESENTATIONS
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
+from motiondiffuse_ros.training.texts import other_words_of
 from motiondiffuse_ros.training.windows import WindowSampler, clip_probabilities
 
 CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=1, warmup_steps=1)
@@ -127,6 +128,25 @@ def test_rare_deeds_are_drawn_as_often_as_frequent_ones():
     )
     drawn = next(sampler.batches(200)).texts
     assert 70 < drawn.count("a person swings a golf club") < 130
+
+
+def test_a_clip_comes_with_other_words_each_time_and_mostly_with_its_captions():
+    corpus = corpus_of([("64_01", "train", "a person swings a golf club", waving(40))])
+    (clip,) = corpus.clips
+    sampler = WindowSampler(
+        *(corpus, corpus.clips),
+        max_frames=64,
+        mirror=0.0,
+        texts=lambda clip: clip.captions,
+        other_words=other_words_of,
+        seed=0,
+    )
+    batch = next(sampler.batches(200))
+    others = [text for text in batch.texts if text not in clip.captions]
+    assert set(others) <= set(other_words_of(clip))
+    assert len(set(others)) > 20
+    assert {len(own) for own in batch.synonyms} == {len(clip.captions) + 3}
+    assert 120 < len(others) < 180  # three texts of four
 
 
 def test_walks_are_also_shown_in_reverse_as_walking_backward(real_paths):
