@@ -333,6 +333,7 @@ class Planner:
         request: MotionRequest,
         *,
         start: Start | None = None,
+        track: bool | None = None,
         progress: Callable[[Progress], None] | None = None,
         cancelled: Callable[[], bool] | None = None,
     ) -> Plan:
@@ -342,6 +343,8 @@ class Planner:
             request: What to do.
             start: What the motion continues, and the state in which the robot will be; None
                 starts over the origin with the motion's first pose.
+            track: Whether the chosen motion is also judged by simulated tracking; None is as
+                configured.
             progress: Told of every stage and denoising step.
             cancelled: Asked before every denoising step and between stages.
 
@@ -368,7 +371,8 @@ class Planner:
         candidates = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given
-        best = self._choose(candidates, match, request, robot, watch, repairs)
+        track = config.track if track is None else track
+        best = self._choose(candidates, match, request, robot, watch, repairs, track)
         trajectory = watch.run(
             "retargeting",
             lambda: build_trajectory(
@@ -475,6 +479,7 @@ class Planner:
         robot: Robot,
         watch: _Stages,
         repairs: bool,
+        track: bool,
     ) -> _Chosen:
 
         def assessed(motion: Motion) -> Report:
@@ -513,7 +518,7 @@ class Planner:
                     cancelled=watch.cancelled,
                     progress=lambda share: watch.advance("physics", 0.6 + 0.3 * share),
                 )
-            if self.config.track:
+            if track:
                 report = with_tracking(report, motion, cancelled=watch.cancelled)
             watch.advance("physics", 1.0, report.verdict)
             return _Chosen(best, matches[best], motion, report)

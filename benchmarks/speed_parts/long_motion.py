@@ -29,8 +29,9 @@ def measure_long(length: float, candidates: int) -> dict[str, float]:
     """Plan a motion in a new process that has planned 2 s before.
 
     Returns:
-        `motion_s` and `plan_s` [s]; `before_mb` and `peak_mb`, resident memory before and its
-        peak while planning; `own_mb`, the bytes of the plan's motion and trajectory.
+        `motion_s` and `plan_s` [s]; `before_mb`, `peak_mb` and `after_mb`, resident memory before,
+        its peak while planning and with the plan made; `own_mb`, the bytes of the plan's motion
+        and trajectory.
     """
     module = "benchmarks.speed_parts.long_motion"
     command = ["--seconds", str(length), "--candidates", str(candidates)]
@@ -53,13 +54,15 @@ def main(options: Options) -> None:
     plans = []
     request = MotionRequest.from_text(text, options.seconds, seed=0)
     took = seconds(lambda: plans.append(planner.plan(request)))
+    memory = memory_mb()
     motion, trajectory = plans[0].motion, plans[0].trajectory
     arrays = [*vars(motion).values(), *vars(trajectory).values()]
     figures = {
         "motion_s": options.seconds,
         "plan_s": took,
         "before_mb": before,
-        "peak_mb": memory_mb()["peak"],
+        "peak_mb": memory["peak"],
+        "after_mb": memory["now"],
         "own_mb": sum(getattr(a, "nbytes", 0) for a in arrays) / 2**20,
         **{f"{stage}_s": value for stage, value in plans[0].timings_s.items()},
     }

@@ -89,8 +89,9 @@ def _planned(
     request: MotionRequest,
     origin: Origin,
     progress: Callable[[Progress], None] | None,
+    track: bool | None = None,
 ) -> Plan:
-    plan = planner.plan(request, start=origin.start, progress=progress)
+    plan = planner.plan(request, start=origin.start, track=track, progress=progress)
     for state in origin.restarts:
         plan = planner.restarted(plan, state)
     return plan
@@ -100,7 +101,7 @@ def _joined(planner: Planner, origin: Origin, progress: Callable[[Progress], Non
     count, plans = len(origin.pieces), []
     for i, piece in enumerate(origin.pieces):
         told = None if progress is None else progress_of_piece(progress, i, count)
-        plans.append(_planned(planner, piece.request, piece.origin, told))
+        plans.append(_planned(planner, piece.request, piece.origin, told, track=False))
     seams = [piece.begins for piece in origin.pieces[1:]]
     return join_plans(origin.given, plans, seams, track=planner.config.track)
 

@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from rclpy.action.server import ActionServer, CancelResponse, ServerGoalHandle
@@ -20,6 +21,7 @@ from std_msgs.msg import String
 from motiondiffuse_ros.action import GenerateMotion
 from motiondiffuse_ros.diffusion.threads import Threads, use_threads
 from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
+from motiondiffuse_ros.memory import return_freed_memory
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.pieces import split
@@ -203,6 +205,7 @@ class MotionDiffuseNode(LifecycleNode):
             self._configured.publisher.destroy()
             self._configured.joints.destroy()
             self._configured = None
+            return_freed_memory()  # or the next weights come on top of these
         self.settings.locked = False
 
     def _beat(self) -> None:
@@ -220,9 +223,12 @@ class MotionDiffuseNode(LifecycleNode):
     ) -> MotionPlan:
         """Plan and publish, piece by piece if so set; runs in the planning thread."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
+        pieces = split(request, self.settings["horizon"])
+        # the robot waits for pieces; what they are together is tracked below
+        track = self.settings["track"] and len(pieces) == 1
         made = plan_in_pieces(
-            split(request, self.settings["horizon"]),
-            self._plan_piece,
+            pieces,
+            partial(self._plan_piece, track=track),
             progress=progress,
             cancelled=cancelled,
             drop=self._configured.publisher.reference.forget_what_follows,
@@ -242,6 +248,7 @@ class MotionDiffuseNode(LifecycleNode):
         request: MotionRequest,
         follows: Time | None,
         *,
+        track: bool,
         progress: Callable[[Progress], None],
         cancelled: Callable[[], bool],
     ) -> Published:
@@ -253,6 +260,7 @@ class MotionDiffuseNode(LifecycleNode):
         plan = planner.plan(
             request,
             start=None if seam is None else seam.start,
+            track=track,
             progress=progress,
             cancelled=cancelled,
         )

@@ -46,14 +46,10 @@ class PlanPublisher:
             at: When its first point is due, and its stamp; until then `~/reference` goes on with
                 the plan before. None = now.
         """
-        if at is not None:  # it does not wait while the messages are made
-            self.reference.start(plan.trajectory, at)
-        header = Header(frame_id=self._frame_id)
-        message = plan_to_message(plan, header, plan_id=str(uuid4()))
         stamp = at or self._node.get_clock().now()
-        header.stamp = stamp.to_msg()  # shared by all three
-        if at is None:
-            self.reference.start(plan.trajectory, stamp)
+        self.reference.start(plan.trajectory, stamp)  # it does not wait for the messages
+        header = Header(stamp=stamp.to_msg(), frame_id=self._frame_id)  # shared by all three
+        message = plan_to_message(plan, header, plan_id=str(uuid4()))
         self._root.publish(message.root_trajectory)
         self._joints.publish(message.trajectory)
         self._plan.publish(message)

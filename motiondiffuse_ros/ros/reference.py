@@ -98,6 +98,8 @@ class ReferenceStream:
         current = self._current
         before = None if current is None else current.until(at, self._node.get_clock().now())
         self._current = Playing(TrajectoryState(trajectory), at, before)
+        if current is None:  # the timer's first call is a period away
+            self._publish()
         self._timer.reset()
 
     def forget_what_follows(self) -> None:

@@ -23,7 +23,8 @@ ROBOT = get_robot("humanoid")
 @pytest.fixture
 def client(graph) -> Iterator[MotionClient]:
     """A client of a node that plans three seconds at a time."""
-    arguments = ros_arguments(**FAST, horizon=3.0, record_dir=graph / "recordings")
+    settings = {**FAST, "track": True, "horizon": 3.0}
+    arguments = ros_arguments(**settings, record_dir=graph / "recordings")
     with (
         running("motiondiffuse_ros.ros.node", arguments, graph / "node.log") as process,
         MotionClient(lambda: process.poll() is None) as client,
@@ -51,6 +52,9 @@ def test_pieces_follow_one_another_without_a_jump(client, graph):
     began = seconds(result.plan.header.stamp)
     assert began == seconds(pieces[0].header.stamp)
     assert [plan.request.seed for plan in pieces] == [3, 4, 5]
+    # nobody waits for the simulation of a piece
+    assert np.isnan([plan.report.time_to_fall_s for plan in pieces]).all()
+    assert result.plan.report.time_to_fall_s > 0.0
     for old, new in pairwise(pieces):
         seam = seconds(new.header.stamp) - seconds(old.header.stamp)
         here, there = states(old)[0].at(seam), states(new)[0].at(0.0)
