@@ -34,11 +34,11 @@ from motiondiffuse_ros.evaluation.tables import (
     terminal_table,
 )
 from motiondiffuse_ros.evaluation.tally import Row
+from motiondiffuse_ros.memory import keep_freed_memory
 from motiondiffuse_ros.text import TextEncoder, TokenStates, load_text_encoder
 from motiondiffuse_ros.text.encoder import sort_out_padding
 from motiondiffuse_ros.text.minilm import model_folder
 from motiondiffuse_ros.training.config import TrainConfig
-from motiondiffuse_ros.memory import keep_freed_memory
 from motiondiffuse_ros.training.trainer import CHECKPOINT_FOLDER, Trainer
 
 BASE = DenoiserConfig()

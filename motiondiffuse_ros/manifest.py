@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from hashlib import sha256
 from importlib.resources import files as package_files
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import torch
 from safetensors import SafetensorError
@@ -17,6 +17,8 @@ from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.hashing import file_sha256
 
 CONFIG_FILE = "config.json"
+
+_Module = TypeVar("_Module", bound=torch.nn.Module)
 
 
 def shipped(name: str) -> Path:
@@ -89,16 +91,24 @@ def save_weights(module: torch.nn.Module, path: Path, dtype: torch.dtype = torch
     save_file(tensors, path)
 
 
-def load_weights(module: torch.nn.Module, path: Path, *, what: str) -> None:
-    """Read tensors into a module, which stays in float32 and goes into evaluation mode.
+def load_weights(create: Callable[[], _Module], path: Path, *, what: str) -> _Module:
+    """Return a module of stored tensors, in float32 and in evaluation mode.
+
+    Args:
+        create: Makes the module; its own values are not computed.
+        path: Safetensors of its names.
+        what: Kind of the weights, for messages.
 
     Raises:
         CheckpointError: If the file is not one of tensors of the module's names and shapes.
     """
+    with torch.device("meta"):
+        module = create()
     try:
-        module.load_state_dict({k: v.float() for k, v in load_file(path).items()})
+        tensors = {k: v.float() for k, v in load_file(path).items()}
+        module.load_state_dict(tensors, assign=True)
     except (OSError, SafetensorError, RuntimeError) as error:
         raise CheckpointError(
             f"{what} {path.parent}: {path.name} does not fit its {CONFIG_FILE} ({error})"
         ) from error
-    module.eval()
+    return module.eval()

@@ -25,7 +25,7 @@ def keep_freed_memory() -> bool:
 def return_freed_memory() -> None:
     """Give what is no longer used back to the system, where the C library is glibc.
 
-    Weights are parts of reference cycles, and every thread that freed something keeps it for itself.
+    Weights are parts of reference cycles, and each thread keeps what it freed for itself.
     """
     gc.collect()
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)

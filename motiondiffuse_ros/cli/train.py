@@ -71,8 +71,8 @@ def main(arguments: Sequence[str]) -> int:
     from motiondiffuse_ros.corpus.store import Corpus
     from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
     from motiondiffuse_ros.evaluation.evaluator import Evaluator
-    from motiondiffuse_ros.text import load_text_encoder
     from motiondiffuse_ros.memory import keep_freed_memory
+    from motiondiffuse_ros.text import load_text_encoder
     from motiondiffuse_ros.training.ranks import joined
     from motiondiffuse_ros.training.trainer import Trainer, TrainProgress
 

@@ -60,8 +60,9 @@ class Checkpoint:
             fields=("denoiser", "text_encoder_sha256"),
             files=(MODEL_FILE, STATISTICS_FILE),
         )
-        denoiser = Denoiser(DenoiserConfig.from_dict(config["denoiser"]))
-        load_weights(denoiser, folder / MODEL_FILE, what="checkpoint")
+        denoiser_config = DenoiserConfig.from_dict(config["denoiser"])
+        path = folder / MODEL_FILE
+        denoiser = load_weights(lambda: Denoiser(denoiser_config), path, what="checkpoint")
         return cls(
             denoiser,
             Statistics.load(folder / STATISTICS_FILE),

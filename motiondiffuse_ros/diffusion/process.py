@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
+from functools import cache
 from typing import Any
 
 from torch import Tensor
@@ -21,7 +23,7 @@ Scheduler = DDPMScheduler | DPMSolverMultistepScheduler
 
 
 def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
-    """Return a sampler for a denoiser's noise schedule.
+    """Return a new sampler for a denoiser's noise schedule.
 
     Args:
         name: One of `SCHEDULERS`; "ddpm" with all steps is the paper's.
@@ -30,6 +32,11 @@ def make_scheduler(name: str, config: DenoiserConfig) -> Scheduler:
     Raises:
         RequestError: If there is no such scheduler.
     """
+    return deepcopy(_scheduler(name, config))
+
+
+@cache  # the schedule of noise takes a loop over all training steps
+def _scheduler(name: str, config: DenoiserConfig) -> Scheduler:
     common: dict[str, Any] = {
         "num_train_timesteps": config.train_steps,
         "beta_schedule": config.beta_schedule,

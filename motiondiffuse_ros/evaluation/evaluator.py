@@ -166,13 +166,13 @@ class Evaluator:
             )
         config = EvaluatorConfig.from_dict(manifest["evaluator"])
         actions = tuple(manifest["actions"])
-        network = TextMotionNetwork(config)
-        load_weights(network, folder / _NETWORK, what="evaluator")
-        recogniser = ActionNetwork(config, len(actions)) if actions else None
-        if recogniser is not None:
-            load_weights(recogniser, folder / _ACTIONS, what="evaluator")
+        recogniser = None
+        if actions:
+            recogniser = load_weights(
+                lambda: ActionNetwork(config, len(actions)), folder / _ACTIONS, what="evaluator"
+            )
         return cls(
-            network,
+            load_weights(lambda: TextMotionNetwork(config), folder / _NETWORK, what="evaluator"),
             recogniser,
             actions,
             Statistics.load(folder / _STATISTICS),

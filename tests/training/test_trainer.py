@@ -14,8 +14,8 @@ from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
 from motiondiffuse_ros.errors import CheckpointError, InputError
 from motiondiffuse_ros.motion.features import REPRESENTATIONS
 from motiondiffuse_ros.training.config import TrainConfig
-from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
 from motiondiffuse_ros.training.texts import other_words_of
+from motiondiffuse_ros.training.trainer import STATE_FILE, Trainer
 from motiondiffuse_ros.training.windows import WindowSampler, clip_probabilities
 
 CONFIG = TrainConfig(minutes=0.05, batch_size=4, validate_steps=1, warmup_steps=1)
