@@ -25,13 +25,15 @@ from benchmarks.speed_parts.checks import measure_checks
 from benchmarks.speed_parts.clock import machine
 from benchmarks.speed_parts.document import markdown, write_between_marks
 from benchmarks.speed_parts.long_motion import measure_long
-from benchmarks.speed_parts.node import measure_node
+from benchmarks.speed_parts.node import measure_node, measure_streaming
 from benchmarks.speed_parts.sampling import measure_sampling
 from benchmarks.speed_parts.scaling import attention_rows, batch_rows, draw
 from benchmarks.speed_parts.summary import summary_rows
 
 LENGTHS = (2.0, 6.0, 30.0, 120.0, 300.0, 600.0)
 BATCHES = (1, 2, 4, 8, 16, 32, 64)
+STREAMED = ({"horizon": 2.0}, {"horizon": 2.0, "candidates": 1})
+"""Parameters of the node with which first set-points are measured, too."""
 TOKENS = (64, 128, 256, 512, 1024, 2048, 4096)
 
 
@@ -71,6 +73,9 @@ def measure(options: Options) -> dict[str, Any]:
     parameters = {name: yaml.safe_load(text) for name, text in options.parameters.items()}
     node = measure_node(options.seconds, repeats, 1 if quick else options.starts, parameters)
     record |= node.to_dict()
+    record["streamed"] = [
+        measure_streaming(options.seconds, repeats, parameters | wanted) for wanted in STREAMED
+    ]
     sampling = measure_sampling(
         options.seconds, options.candidates, repeats, 3 if quick else options.paper_steps
     )

@@ -28,6 +28,7 @@ from motiondiffuse_ros.evaluation.evaluator import Evaluator, critic_of
 from motiondiffuse_ros.execution import EXECUTIONS, NONE, PUBLISH_EXECUTED, execute
 from motiondiffuse_ros.kept import Kept, constraints, path_points
 from motiondiffuse_ros.manifest import folder_hashes, shipped
+from motiondiffuse_ros.memory import return_freed_memory
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion import rotations as rot
 from motiondiffuse_ros.motion.bvh import write_bvh
@@ -49,6 +50,7 @@ from motiondiffuse_ros.text.sides import with_side
 
 _T = TypeVar("_T")
 _MAX_DRAWN_SEED = 2**31
+_LONG = 60.0  # s; what longer motions borrow from the system is worth the time to give it back
 # share of the work, for the fraction of a progress report
 _STAGES = {"text": 0.02, "sampling": 0.68, "physics": 0.25, "retargeting": 0.05}
 
@@ -386,6 +388,8 @@ class Planner:
                 cancelled=watch.cancelled,
             ),
         )
+        if request.total_seconds > _LONG:
+            return_freed_memory()
         assert request.seed is not None
         return Plan(
             request=request,

@@ -35,10 +35,10 @@ def markdown(record: dict[str, Any]) -> str:
             f"{row['plan_s']:.2f}",
             f"{row['sampling_s']:.2f}",
             f"{row['physics_s']:.2f}",
-            f"{row['peak_mb'] - row['before_mb']:.0f}",
             f"{row['own_mb']:.1f}",
+            *_memory(row),
             f"{one['plan_s']:.2f}",
-            f"{one['peak_mb'] - one['before_mb']:.0f}",
+            *_memory(one),
         )
         for row, one in zip(record["lengths"], record["lengths_one_candidate"], strict=True)
     ]
@@ -65,10 +65,12 @@ def markdown(record: dict[str, Any]) -> str:
                     "plan, s",
                     "sampling, s",
                     "physics, s",
-                    "memory on top, MiB",
                     "own size, MiB",
-                    "plan of one candidate, s",
-                    "its memory, MiB",
+                    "peak, MiB",
+                    "kept, MiB",
+                    "one candidate: plan, s",
+                    "peak, MiB",
+                    "kept, MiB",
                 ),
                 lengths,
             ),
@@ -76,3 +78,7 @@ def markdown(record: dict[str, Any]) -> str:
             table(("motions", *(f"{n} threads" for n in counts)), batches),
         ]
     )
+
+
+def _memory(row: dict[str, float]) -> tuple[str, str]:
+    return tuple(f"{row[when] - row['before_mb']:.0f}" for when in ("peak_mb", "after_mb"))

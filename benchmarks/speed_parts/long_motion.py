@@ -8,8 +8,10 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, is_dataclass
 
+import numpy as np
 import tyro
 
 from benchmarks.speed_parts.clock import forget_peak, memory_mb, seconds
@@ -30,8 +32,7 @@ def measure_long(length: float, candidates: int) -> dict[str, float]:
 
     Returns:
         `motion_s` and `plan_s` [s]; `before_mb`, `peak_mb` and `after_mb`, resident memory before,
-        its peak while planning and with the plan made; `own_mb`, the bytes of the plan's motion
-        and trajectory.
+        its peak while planning and with the plan made; `own_mb`, the bytes of the plan's arrays.
     """
     module = "benchmarks.speed_parts.long_motion"
     command = ["--seconds", str(length), "--candidates", str(candidates)]
@@ -39,6 +40,19 @@ def measure_long(length: float, candidates: int) -> dict[str, float]:
         [sys.executable, "-m", module, *command], check=True, capture_output=True, text=True
     )
     return json.loads(ended.stdout.splitlines()[-1])
+
+
+def _sizes(held: object) -> dict[int, int]:
+    """Return the bytes of all arrays in a record and the records in it, by identity."""
+    if isinstance(held, np.ndarray):
+        return {id(held): held.nbytes}
+    if isinstance(held, Mapping):
+        parts = list(held.values())
+    elif is_dataclass(held):
+        parts = list(vars(held).values())  # computed ones, too
+    else:
+        parts = list(held) if isinstance(held, tuple) else []
+    return {key: size for part in parts for key, size in _sizes(part).items()}
 
 
 def main(options: Options) -> None:
@@ -55,15 +69,13 @@ def main(options: Options) -> None:
     request = MotionRequest.from_text(text, options.seconds, seed=0)
     took = seconds(lambda: plans.append(planner.plan(request)))
     memory = memory_mb()
-    motion, trajectory = plans[0].motion, plans[0].trajectory
-    arrays = [*vars(motion).values(), *vars(trajectory).values()]
     figures = {
         "motion_s": options.seconds,
         "plan_s": took,
         "before_mb": before,
         "peak_mb": memory["peak"],
         "after_mb": memory["now"],
-        "own_mb": sum(getattr(a, "nbytes", 0) for a in arrays) / 2**20,
+        "own_mb": sum(_sizes(plans[0]).values()) / 2**20,
         **{f"{stage}_s": value for stage, value in plans[0].timings_s.items()},
     }
     print(json.dumps(figures))

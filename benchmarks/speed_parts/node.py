@@ -1,14 +1,22 @@
-"""The node as a process of its own, as a robot meets it."""
+"""The node as a process of its own, as a robot meets it.
+
+python -m benchmarks.speed_parts.node --seconds 6 --parameters horizon 2.0
+"""
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
+import sys
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import tyro
+import yaml
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
@@ -98,6 +106,30 @@ def measure_node(
     raise AssertionError("the last start returns")
 
 
+def measure_streaming(
+    seconds: float, repeats: int, parameters: dict[str, object]
+) -> dict[str, object]:
+    """Return what a node with some parameters takes to its first set-points.
+
+    It is measured by a process of its own, which talks on a ROS graph of its own.
+    """
+    told = [word for name, value in parameters.items() for word in (name, str(value))]
+    ended = subprocess.run(
+        [
+            *(sys.executable, "-m", "benchmarks.speed_parts.node"),
+            *("--seconds", str(seconds), "--repeats", str(repeats), "--parameters", *told),
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    figures = json.loads(ended.stdout.splitlines()[-1])
+    return {
+        "parameters": parameters,
+        **{name: figures[name] for name in ("first_setpoint_s", "first_setpoint_all_s")},
+    }
+
+
 class _Listener(MotionClient):
     """A client that notes when plans and set-points arrive."""
 
@@ -131,3 +163,26 @@ def request_of(seconds: float) -> MotionRequest:
     """Return the request of so many seconds [s] that the node is measured with."""
     segment = MotionSegment(text=TEXT, start=0.0, end=seconds)
     return MotionRequest(segments=[segment], duration=seconds)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to ask a node for."""
+
+    seconds: float = 6.0
+    """Length of the motions [s]."""
+    repeats: int = 20
+    """Sentences that count."""
+    parameters: dict[str, str] = field(default_factory=dict)
+    """Parameters of the node, beside the length, as YAML has them."""
+
+
+def main(options: Options) -> None:
+    """Measure a node that is started once, and print the figures as JSON."""
+    parameters = {name: yaml.safe_load(text) for name, text in options.parameters.items()}
+    speed = measure_node(options.seconds, options.repeats, 1, parameters)
+    print(json.dumps(speed.to_dict()))
+
+
+if __name__ == "__main__":
+    main(tyro.cli(Options))

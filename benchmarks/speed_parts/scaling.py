@@ -58,9 +58,9 @@ def draw(lengths: list[dict], attention: list[dict], path: Path) -> None:
     time.plot(seconds, [row["plan_s"] for row in lengths], "o-", label="plan")
     time.plot(seconds, [row["sampling_s"] for row in lengths], "o-", label="of that, sampling")
     time.set(xlabel="length of the motion, s", ylabel="s")
-    memory.plot(
-        seconds, [row["peak_mb"] - row["before_mb"] for row in lengths], "o-", label="growth"
-    )
+    for name, when in (("peak", "peak_mb"), ("kept", "after_mb")):
+        growth = [row[when] - row["before_mb"] for row in lengths]
+        memory.plot(seconds, growth, "o-", label=name)
     memory.plot(seconds, [row["own_mb"] for row in lengths], "o-", label="the plan's own size")
     memory.set(xlabel="length of the motion, s", ylabel="MiB")
     tokens = [row["tokens"] for row in attention]

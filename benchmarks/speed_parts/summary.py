@@ -15,7 +15,15 @@ def summary_rows(record: dict[str, Any]) -> list[tuple[str, str, str]]:
             f"{plan['median']:.2f} (p95 {plan['p95']:.2f})",
             "0.5 (1.0)",
         ),
-        ("sentence to first set-point, s", f"{record['first_setpoint_s']:.2f}", "0.2"),
+        ("sentence to first set-point, s", f"{record['first_setpoint_s']:.2f}", ""),
+        *(
+            (
+                f"the same with {', '.join(f'{k}:={v}' for k, v in row['parameters'].items())}",
+                f"{row['first_setpoint_s']:.2f}",
+                "0.2",
+            )
+            for row in record["streamed"]
+        ),
         ("sampling, s", f"{record['sampling_s']:.3f}", ""),
         ("faster than the paper's, times", f"{record['ratio_to_paper']:.0f}", "300"),
         (
