@@ -32,7 +32,7 @@ from benchmarks.speed_parts.summary import summary_rows
 
 LENGTHS = (2.0, 6.0, 30.0, 120.0, 300.0, 600.0)
 BATCHES = (1, 2, 4, 8, 16, 32, 64)
-STREAMED = ({"horizon": 2.0}, {"horizon": 2.0, "candidates": 1})
+STREAMED = ({"horizon": 2.0}, {"horizon": 2.0, "first_candidates": 4})
 """Parameters of the node with which first set-points are measured, too."""
 TOKENS = (64, 128, 256, 512, 1024, 2048, 4096)
 

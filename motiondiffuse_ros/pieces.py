@@ -32,7 +32,9 @@ class Piece:
     start: float
 
 
-def split(request: MotionRequest, horizon: float) -> tuple[Piece, ...]:
+def split(
+    request: MotionRequest, horizon: float, first_candidates: int | None = None
+) -> tuple[Piece, ...]:
     """Return the pieces of a request, each of which takes over from the one before.
 
     Waypoints and edits count for the motion as a whole; such a request stays in one piece.
@@ -40,6 +42,8 @@ def split(request: MotionRequest, horizon: float) -> tuple[Piece, ...]:
     Args:
         request: Valid.
         horizon: Time from one take-over to the next [s]; 0 leaves the request whole.
+        first_candidates: Most candidates of the first of several pieces; None leaves them as they
+            are.
     """
     total = request.total_seconds
     if horizon <= 0.0 or request.waypoints or request.edit is not None:
@@ -49,10 +53,14 @@ def split(request: MotionRequest, horizon: float) -> tuple[Piece, ...]:
     while total - starts[-1] > horizon + TAIL + LIMITS.min_seconds:
         starts.append(len(starts) * horizon)
     ends = [start + TAIL for start in starts[1:]] + [total]
-    return tuple(
+    pieces = [
         Piece(_cut(request, i, start, end), start)
         for i, (start, end) in enumerate(zip(starts, ends, strict=True))
-    )
+    ]
+    if first_candidates is not None and len(pieces) > 1:
+        count = min(first_candidates, request.candidates or first_candidates)
+        pieces[0] = Piece(replace(pieces[0].request, candidates=count), 0.0)
+    return tuple(pieces)
 
 
 def nth_seed(seed: int, index: int) -> int:

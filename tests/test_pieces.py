@@ -57,6 +57,16 @@ def test_some_requests_stay_whole(horizon, fields):
     assert piece.request is request
 
 
+@pytest.mark.parametrize(("asked", "first"), [(None, 2), (4, 2), (1, 1)])
+def test_the_first_of_several_pieces_may_have_fewer_candidates(asked, first):
+    request = MotionRequest((Segment("a person walks", 0.0, 20.0),), candidates=asked)
+    head, *rest = split(request, 3.0, first_candidates=2)
+    assert head.request.candidates == first
+    assert {piece.request.candidates for piece in rest} == {asked}
+    (whole,) = split(request, 0.0, first_candidates=2)
+    assert whole.request is request
+
+
 def test_pieces_have_seeds_of_their_own():
     request = MotionRequest((Segment("a person walks", 0.0, 12.0),), seed=2**63 - 1)
     assert [piece.request.seed for piece in split(request, 4.0)] == [2**63 - 1, 0, 1]

@@ -223,7 +223,7 @@ class MotionDiffuseNode(LifecycleNode):
     ) -> MotionPlan:
         """Plan and publish, piece by piece if so set; runs in the planning thread."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
-        pieces = split(request, self.settings["horizon"])
+        pieces = split(request, self.settings["horizon"], self.settings["first_candidates"])
         # the robot waits for pieces; what they are together is tracked below
         track = self.settings["track"] and len(pieces) == 1
         made = plan_in_pieces(

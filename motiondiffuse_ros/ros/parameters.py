@@ -123,6 +123,11 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         "motions sampled by requests that set no number",
         (1, LIMITS.max_candidates),
     ),
+    "first_candidates": ParameterSpec(
+        1,
+        "most motions sampled for the first of several pieces (horizon), which a robot waits for",
+        (1, LIMITS.max_candidates),
+    ),
     "survivors": ParameterSpec(
         _DEFAULT.survivors,
         "candidates that are sampled to the end, by match with the texts early on",
