@@ -32,7 +32,10 @@ from benchmarks.speed_parts.summary import summary_rows
 
 LENGTHS = (2.0, 6.0, 30.0, 120.0, 300.0, 600.0)
 BATCHES = (1, 2, 4, 8, 16, 32, 64)
-STREAMED = ({"horizon": 2.0}, {"horizon": 2.0, "first_candidates": 4})
+STREAMED: tuple[dict[str, object], ...] = (
+    {"horizon": 2.0},
+    {"horizon": 2.0, "first_candidates": 4},
+)
 """Parameters of the node with which first set-points are measured, too."""
 TOKENS = (64, 128, 256, 512, 1024, 2048, 4096)
 
@@ -74,7 +77,7 @@ def measure(options: Options) -> dict[str, Any]:
     node = measure_node(options.seconds, repeats, 1 if quick else options.starts, parameters)
     record |= node.to_dict()
     record["streamed"] = [
-        measure_streaming(options.seconds, repeats, parameters | wanted) for wanted in STREAMED
+        measure_streaming(options.seconds, repeats, {**parameters, **wanted}) for wanted in STREAMED
     ]
     sampling = measure_sampling(
         options.seconds, options.candidates, repeats, 3 if quick else options.paper_steps

@@ -164,9 +164,11 @@ def test_a_motion_goes_on_where_another_was_left(planner, plan, seam, late, text
     )
     assert new.motion.duration == pytest.approx(3.0)
     np.testing.assert_allclose(new.motion.positions[0], lead_in.positions[-1], atol=1e-3)
-    # it does not snap away from there: a twentieth of a second later every joint is near
+    # it does not snap away from there: a twentieth of a second later every joint is near, as far as
+    # the foot that is swung allows
+    before = np.linalg.norm(lead_in.positions[-1] - lead_in.positions[-2], axis=1)
     step = np.linalg.norm(new.motion.positions[1] - lead_in.positions[-1], axis=1)
-    assert step.max() < 0.25
+    assert step.max() < max(0.2, 1.5 * before.max())
 
     here = running.at(seam + late)
     assert here.root is not None

@@ -80,5 +80,5 @@ def markdown(record: dict[str, Any]) -> str:
     )
 
 
-def _memory(row: dict[str, float]) -> tuple[str, str]:
+def _memory(row: dict[str, float]) -> tuple[str, ...]:
     return tuple(f"{row[when] - row['before_mb']:.0f}" for when in ("peak_mb", "after_mb"))

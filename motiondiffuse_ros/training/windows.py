@@ -143,7 +143,7 @@ class WindowSampler:
         return _Window(clip, start, frames, tuple(texts))
 
     def _few_other_words(self, clip: Clip) -> list[str]:
-        every = self._other_words(clip)
+        every = tuple(self._other_words(clip))
         return [every[i] for i in self._rng.permutation(len(every))[:_OTHER_WORDS]]
 
     def _draw_stated(self) -> _Window:

@@ -217,7 +217,8 @@ def _bounces(wrist, spread):
 
 def test_jumps_with_arms_and_legs_out_and_in_again_are_jumping_jacks():
     assert {"jumps", "jumping jacks"} <= set(_statements(_bounces(2.0, 0.4)))
-    for other in (_bounces(0.9, 0.4), _bounces(2.0, 0.1)):
+    few = np.concatenate([_bounces(2.0, 0.4), STATE.encode(standing(81))])
+    for other in (_bounces(0.9, 0.4), _bounces(2.0, 0.1), few):
         stated = set(_statements(other))
         assert "jumps" in stated
         assert "jumping jacks" not in stated
