@@ -2,7 +2,7 @@
 
     python -m benchmarks.speed [--quick] [--json F] [--docs docs/performance.md]
 
-Takes a quarter of an hour on two cores, which nothing else should use. The node runs as a process of
+Takes a quarter of an hour on two cores, which nothing else should use. The node is a process of
 its own and is asked over ROS 2; all other figures are of this process. Every figure stands beside a
 reference of the same run: the paper's configuration (8 layers, 512 wide, 1000 DDPM steps, of which
 a few dozen are run and scaled), real time, or the floor (operations of one request's matrix
