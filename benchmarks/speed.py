@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import tyro
-import yaml
 from rich.console import Console
 from rich.table import Table
 
@@ -25,7 +24,7 @@ from benchmarks.speed_parts.checks import measure_checks
 from benchmarks.speed_parts.clock import machine
 from benchmarks.speed_parts.document import markdown, write_between_marks
 from benchmarks.speed_parts.long_motion import measure_long
-from benchmarks.speed_parts.node import measure_node, measure_streaming
+from benchmarks.speed_parts.node import as_typed, measure_node, measure_streaming
 from benchmarks.speed_parts.sampling import measure_sampling
 from benchmarks.speed_parts.scaling import attention_rows, batch_rows, draw
 from benchmarks.speed_parts.summary import summary_rows
@@ -73,7 +72,7 @@ def measure(options: Options) -> dict[str, Any]:
     quick = options.quick
     repeats = min(options.repeats, 3) if quick else options.repeats
     record: dict[str, Any] = {"machine": machine()}
-    parameters = {name: yaml.safe_load(text) for name, text in options.parameters.items()}
+    parameters = as_typed(options.parameters)
     node = measure_node(options.seconds, repeats, 1 if quick else options.starts, parameters)
     record |= node.to_dict()
     record["streamed"] = [

@@ -6,14 +6,13 @@ python -m benchmarks.speed_parts.long_motion --seconds 600 [--candidates 4]
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass
 
 import numpy as np
 import tyro
 
+from benchmarks.speed_parts.apart import measured_apart
 from benchmarks.speed_parts.clock import forget_peak, memory_mb, seconds
 
 
@@ -34,12 +33,8 @@ def measure_long(length: float, candidates: int) -> dict[str, float]:
         `motion_s` and `plan_s` [s]; `before_mb`, `peak_mb` and `after_mb`, resident memory before,
         its peak while planning and with the plan made; `own_mb`, the bytes of the plan's arrays.
     """
-    module = "benchmarks.speed_parts.long_motion"
-    command = ["--seconds", str(length), "--candidates", str(candidates)]
-    ended = subprocess.run(
-        [sys.executable, "-m", module, *command], check=True, capture_output=True, text=True
-    )
-    return json.loads(ended.stdout.splitlines()[-1])
+    words = ("--seconds", str(length), "--candidates", str(candidates))
+    return measured_apart("benchmarks.speed_parts.long_motion", *words)
 
 
 def _sizes(held: object) -> dict[int, int]:

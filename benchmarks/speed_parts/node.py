@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 import tempfile
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,6 +19,7 @@ import yaml
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from benchmarks.speed_parts.apart import measured_apart
 from benchmarks.speed_parts.clock import memory_mb
 from benchmarks.speed_parts.sampling import TEXT
 from motiondiffuse_ros.msg import MotionPlan, MotionRequest, MotionSegment
@@ -106,6 +106,11 @@ def measure_node(
     raise AssertionError("the last start returns")
 
 
+def as_typed(parameters: Mapping[str, str]) -> dict[str, object]:
+    """Return parameters of the node that were typed as YAML."""
+    return {name: yaml.safe_load(text) for name, text in parameters.items()}
+
+
 def measure_streaming(
     seconds: float, repeats: int, parameters: dict[str, object]
 ) -> dict[str, object]:
@@ -114,16 +119,8 @@ def measure_streaming(
     It is measured by a process of its own, which talks on a ROS graph of its own.
     """
     told = [word for name, value in parameters.items() for word in (name, str(value))]
-    ended = subprocess.run(
-        [
-            *(sys.executable, "-m", "benchmarks.speed_parts.node"),
-            *("--seconds", str(seconds), "--repeats", str(repeats), "--parameters", *told),
-        ],
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    figures = json.loads(ended.stdout.splitlines()[-1])
+    words = ("--seconds", str(seconds), "--repeats", str(repeats), "--parameters", *told)
+    figures = measured_apart("benchmarks.speed_parts.node", *words)
     return {
         "parameters": parameters,
         **{name: figures[name] for name in ("first_setpoint_s", "first_setpoint_all_s")},
@@ -179,8 +176,7 @@ class Options:
 
 def main(options: Options) -> None:
     """Measure a node that is started once, and print the figures as JSON."""
-    parameters = {name: yaml.safe_load(text) for name, text in options.parameters.items()}
-    speed = measure_node(options.seconds, options.repeats, 1, parameters)
+    speed = measure_node(options.seconds, options.repeats, 1, as_typed(options.parameters))
     print(json.dumps(speed.to_dict()))
 
 

@@ -58,9 +58,9 @@ class WindowSampler:
     backward is half of the time walking forward played in reverse. A share of `deeds` comes with a
     caption, too, but each deed that `corpus.wordings` knows is as frequent as any other. Beside its
     captions a clip comes with a few other words, other ones each time: words that always come with
-    the same clip would stand for that clip. Of clips
-    that do not fit into a window a share of `crop` is shown in shorter pieces: their captions speak
-    of the whole clip, so that no piece fits better than another, and people ask for any length.
+    the same clip would stand for that clip. Of clips that do not fit into a window a share of
+    `crop` is shown in shorter pieces: their captions speak of the whole clip, so that no piece fits
+    better than another, and people ask for any length.
     """
 
     def __init__(
