@@ -21,7 +21,7 @@ from std_msgs.msg import String
 from motiondiffuse_ros.action import GenerateMotion
 from motiondiffuse_ros.diffusion.threads import Threads, use_threads
 from motiondiffuse_ros.errors import Cancelled, ErrorCode, MotionDiffuseError
-from motiondiffuse_ros.memory import return_freed_memory
+from motiondiffuse_ros.memory import return_freed_memory, share_freed_memory
 from motiondiffuse_ros.msg import MotionPlan
 from motiondiffuse_ros.msg import MotionRequest as MotionRequestMsg
 from motiondiffuse_ros.pieces import split
@@ -396,6 +396,7 @@ class MotionDiffuseNode(LifecycleNode):
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the node; returns the exit code."""
+    share_freed_memory()  # any thread may configure, and any thread clean up
     return run_node(MotionDiffuseNode, args, threads=THREADS, finish=MotionDiffuseNode.finish)
 
 
