@@ -201,7 +201,7 @@ class Plan:
         timings_s: Seconds for text, sampling, physics, retargeting and total.
         candidate: Index of the chosen candidate.
         text_match: How well it matches the texts (`selection.TextMatch`), -2 to 2; None where
-            that cannot be judged.
+            that cannot be judged or there was but one candidate.
         scheduler: Sampler that was used.
         origin: What it was made from.
     """
@@ -369,7 +369,8 @@ class Planner:
         )
         watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
-        match = None if self._critic is None else TextMatch(self._critic, texts)
+        critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
+        match = None if critic is None else TextMatch(critic, texts)
         candidates = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given

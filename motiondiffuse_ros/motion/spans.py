@@ -14,4 +14,4 @@ def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def pieces(count: int, size: int) -> list[slice]:
     """Return slices of at most `size` that cover `count` frames; an empty one if there are none."""
-    return [slice(i, i + size) for i in range(0, max(count, 1), size)]
+    return [slice(i, min(i + size, count)) for i in range(0, max(count, 1), size)]

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion import Motion
 from motiondiffuse_ros.motion.rotations import Array, cross
+from motiondiffuse_ros.motion.spans import pieces
 from motiondiffuse_ros.physics.balance import Balance, balance
 from motiondiffuse_ros.physics.body_states import BodyStates, humanoid_states
 from motiondiffuse_ros.physics.floor_forces import floor_forces
@@ -27,7 +28,8 @@ from motiondiffuse_ros.physics.hinge_table import hinge_table
 from motiondiffuse_ros.physics.state import state_velocities
 
 _ROOT = 6  # degrees of freedom of a free root
-_NO_TORQUE = np.zeros(3)
+_FRAMES = 1024
+"""Solved together: more take no less time each, and 30 kB each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,28 +66,26 @@ def state_dynamics(states: BodyStates) -> Dynamics:
     model, qpos, points = _without_contact(states.model), states.qpos, states.points
     data = mujoco.MjData(model)
     qvel, qacc = state_velocities(qpos, states.fps)
-    frames = len(qpos) - 2
-    needed, centre = np.empty((frames, model.nv)), np.empty((frames, 3))
-    turns, supplied = np.empty((frames, 3, 3)), np.zeros((frames, model.nv))
+    frames, weight = len(qpos) - 2, _weight(model)
     touching, places = points.touching()[1:-1], points.places[1:-1]
-    weight = float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity))
-    for i in range(frames):
-        data.qpos, data.qvel, data.qacc = qpos[i + 1], qvel[i], qacc[i]
-        mujoco.mj_inverse(model, data)
-        needed[i], centre[i] = data.qfrc_inverse, data.subtree_com[1]
-        turns[i] = data.xmat[1].reshape(3, 3)
-    wrench = _root_wrench(needed, turns, qpos[1:-1, :3] - centre) / weight
     used = touching.any(axis=0)  # most of a body never touches the floor
-    left, pushes = floor_forces(wrench, places[:, used] - centre[:, None], touching[:, used])
-    where, bodies = places[:, used], points.bodies[used]
-    for i in range(frames):
-        data.qpos = qpos[i + 1]
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        for p in np.flatnonzero(pushes[i, :, 2] > 0.0):
-            push = weight * pushes[i, p]
-            mujoco.mj_applyFT(model, data, push, _NO_TORQUE, where[i, p], bodies[p], supplied[i])
-    torques = (needed - supplied)[:, _ROOT:]
+    leans_on = _moved_by(model)[points.bodies[used]]
+    torques, centre = np.empty((frames, model.nv - _ROOT)), np.empty((frames, 3))
+    left = np.empty((frames, 6))
+    for at in pieces(frames, _FRAMES):
+        count = at.stop - at.start
+        needed, axes = np.empty((count, model.nv)), np.empty((count, model.nv, 6))
+        turns = np.empty((count, 3, 3))
+        for i, frame in enumerate(range(at.start, at.stop)):
+            data.qpos, data.qvel, data.qacc = qpos[frame + 1], qvel[frame], qacc[frame]
+            mujoco.mj_inverse(model, data)
+            needed[i], centre[frame], axes[i] = data.qfrc_inverse, data.subtree_com[1], data.cdof
+            turns[i] = data.xmat[1].reshape(3, 3)
+        wrench = _root_wrench(needed, turns, qpos[1:-1, :3][at] - centre[at]) / weight
+        arms = places[at][:, used] - centre[at, None]
+        left[at], pushes = floor_forces(wrench, arms, touching[at][:, used])
+        supplied = _generalised(weight * pushes, arms, axes, leans_on)
+        torques[at] = (needed - supplied)[:, _ROOT:]
     return Dynamics(
         residual_force=np.linalg.norm(left[:, :3], axis=-1),
         residual_torque=np.linalg.norm(left[:, 3:], axis=-1),
@@ -95,6 +95,36 @@ def state_dynamics(states: BodyStates) -> Dynamics:
         supported=np.any(touching, axis=1),
         poise=balance(centre, places, touching, states.fps),
     )
+
+
+def _weight(model: mujoco.MjModel) -> float:
+    """Return the body's weight, N."""
+    return float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity))
+
+
+def _generalised(pushes: Array, arms: Array, axes: Array, moved: NDArray[np.bool_]) -> Array:
+    """Return what forces at points do along each degree of freedom [T, nv], N m or N.
+
+    Args:
+        pushes: Force at each point [T, P, 3], N.
+        arms: The points, from the centre of mass [T, P, 3], m.
+        axes: MuJoCo's `cdof`: rotation, and motion of the centre of mass, for each degree of
+            freedom [T, nv, 6].
+        moved: Which degrees of freedom move each point [P, nv].
+    """
+    wrenches = np.concatenate([cross(arms, pushes), pushes], axis=-1)
+    return (axes * (moved.T.astype(float) @ wrenches)).sum(axis=-1)
+
+
+@lru_cache(maxsize=8)
+def _moved_by(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Return which degrees of freedom move each body [nbody, nv]: its own and its parents'."""
+    moved = np.zeros((model.nbody, model.nv), dtype=bool)
+    for body in range(1, model.nbody):  # parents come first
+        first = model.body_dofadr[body]
+        moved[body] = moved[model.body_parentid[body]]
+        moved[body, first : first + model.body_dofnum[body]] = True
+    return moved
 
 
 @lru_cache(maxsize=8)

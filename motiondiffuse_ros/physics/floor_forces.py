@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motiondiffuse_ros.motion.rotations import Array, cross
-from motiondiffuse_ros.motion.spans import pieces
 
 FRICTION = 1.0
 """Coefficient of the friction cones (shoes on a dry floor)."""
@@ -15,8 +14,6 @@ _EDGES = np.array([[FRICTION, 0, 1], [-FRICTION, 0, 1], [0, FRICTION, 1], [0, -F
 # spreads the load over the points that could carry it; without, any one of many answers comes
 _SPREAD = 0.02
 _STEPS, _HALVINGS, _TOLERANCE = 60, 8, 1e-7
-_FRAMES = 1024
-"""Solved together: more take no less time each, and 30 kB each."""
 _STILL_GOING = 0.7
 """Share of frames that are not done below which the others are put aside."""
 
@@ -36,12 +33,6 @@ def floor_forces(needed: Array, arms: Array, touching: NDArray[np.bool_]) -> tup
     Returns:
         The wrench that is left [T, 6], and the push at each point [T, P, 3], in the same units.
     """
-    at_once = pieces(len(touching), _FRAMES)
-    solved = [_solved(needed[at], arms[at], touching[at]) for at in at_once]
-    return np.concatenate([left for left, _ in solved]), np.concatenate([p for _, p in solved])
-
-
-def _solved(needed: Array, arms: Array, touching: NDArray[np.bool_]) -> tuple[Array, Array]:
     frames, points = touching.shape
     count = points * len(_EDGES)
     edges = np.broadcast_to(_EDGES, (frames, points, *_EDGES.shape))

@@ -206,7 +206,7 @@ def record_of(planner: Planner, plan: Plan) -> Record:
 
 def hashes_of(planner: Planner, plan: Plan) -> dict[str, str]:
     """Return the planner's hashes; the critic's only if it had a part in the choice."""
-    judged = plan.text_match is not None and plan.request.candidates != 1
+    judged = plan.text_match is not None
     return {k: v for k, v in planner.hashes.items() if judged or not k.startswith("critic/")}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.foot_skating import skating_of
-from motiondiffuse_ros.physics.statistics.frames import quantiles
+from motiondiffuse_ros.physics.statistics.frames import median, quantiles
 
 _NEAR = 0.025  # m above the lowest corner: what may be holding on
 
@@ -36,12 +36,12 @@ def footing(states: BodyStates) -> dict[str, float]:
         "foot_drift_median": float(np.linalg.norm(np.median(drift, axis=0))),
         "foot_drift_mean": mean_drift,
         "foot_drift_of_slide": mean_drift / (float(slide.mean()) + 0.02),
-        "foot_slide_on_floor": float(np.median(np.where(height.min(axis=1) < 0.04, slide, 0.0))),
+        "foot_slide_on_floor": median(np.where(height.min(axis=1) < 0.04, slide, 0.0)),
         "skating_in_contact": skating.contact_ratio,
         "skating": skating.ratio,
         **travel,
         "step_rate": steps,
-        "step_length_over_rate": float(np.log((np.median(path) + 0.1) / (steps + 0.3))),
+        "step_length_over_rate": float(np.log((median(path) + 0.1) / (steps + 0.3))),
         "low_foot_share": float(np.mean(lower < lowest.min() + 0.06)),
         "airborne_share": airborne,
         "speed_on_the_ground": travel["travel_speed_50"] * (1.0 - airborne),

@@ -13,7 +13,7 @@ from motiondiffuse_ros.motion.spans import runs
 from motiondiffuse_ros.physics.balance import GRAVITY
 from motiondiffuse_ros.physics.body_states import BodyStates
 from motiondiffuse_ros.physics.dynamics import Dynamics
-from motiondiffuse_ros.physics.statistics.frames import log_of, planted, quantile
+from motiondiffuse_ros.physics.statistics.frames import log_of, median, planted, quantile
 
 _LEG_LENGTH = 0.85
 _IN_FLIGHT = 0.04  # m above the lowest place of both soles in the motion
@@ -43,8 +43,8 @@ def _times(states: BodyStates) -> dict[str, float]:
         stances += _inner_lengths(rests, states.fps)
     path = np.linalg.norm(np.diff(states.qpos[:, :2], axis=0), axis=1).sum()
     speed = path * states.fps / max(len(states.qpos) - 1, 1)
-    swing = float(np.median(swings)) if swings else _USUAL_SWING
-    stance = float(np.median(stances)) if stances else _USUAL_STANCE
+    swing = median(np.array(swings)) if swings else _USUAL_SWING
+    stance = median(np.array(stances)) if stances else _USUAL_STANCE
     return {
         "swing_time_50": log_of(swing, 0.05),
         "swing_time_least": log_of(min(swings, default=_USUAL_SWING), 0.05),
@@ -90,6 +90,7 @@ def _together(motion: Motion, states: BodyStates, local: Array) -> dict[str, flo
     left, right = (sole[..., 2].min(axis=1) for sole in states.soles)
     between = np.mean([sole.mean(axis=1) for sole in states.soles], axis=0)
     to_feet = rot.rotate(rot.about_axis(2, -motion.heading), motion.root - between)
+    heels = median(differs["ankle"][:, 1])
     return {
         "arms_with_legs": _correlation(arms, legs),
         "shoulders_with_legs": _correlation(differs["shoulder"][:, 0], legs),
@@ -98,12 +99,8 @@ def _together(motion: Motion, states: BodyStates, local: Array) -> dict[str, flo
         "hips_up_with_feet": _correlation(differs["hip"][:, 2], left - right),
         "sway_with_feet": _correlation(to_feet[:, 1], left - right),
         "sway_ahead_with_legs": _correlation(to_feet[:, 0], np.abs(legs)),
-        "toes_apart_over_heels": float(
-            np.median(differs["foot"][:, 1]) - np.median(differs["ankle"][:, 1])
-        ),
-        "knees_apart_over_heels": float(
-            np.median(differs["knee"][:, 1]) - np.median(differs["ankle"][:, 1])
-        ),
+        "toes_apart_over_heels": median(differs["foot"][:, 1]) - heels,
+        "knees_apart_over_heels": median(differs["knee"][:, 1]) - heels,
         "feet_crossed_share": float(np.mean(differs["ankle"][:, 1] < 0.0)),
     }
 
