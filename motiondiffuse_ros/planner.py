@@ -358,8 +358,17 @@ class Planner:
         """
         request.validate()
         robot = get_robot(request.robot)
-        config, start = self.config, start or Start()
-        origin = Origin(request, start)
+        track = self.config.track if track is None else track
+        watch = _Stages(progress, cancelled)
+        plan = self._planned(request, robot, start or Start(), track, watch)
+        if request.total_seconds > _LONG:  # here, where nothing but the plan is left of the work
+            return_freed_memory()
+        return plan
+
+    def _planned(
+        self, request: MotionRequest, robot: Robot, start: Start, track: bool, watch: _Stages
+    ) -> Plan:
+        config, origin = self.config, Origin(request, start)
         request = request.with_defaults(
             duration=request.total_seconds,
             seed=secrets.randbelow(_MAX_DRAWN_SEED),
@@ -367,14 +376,12 @@ class Planner:
             steps=config.steps,
             candidates=config.candidates,
         )
-        watch = _Stages(progress, cancelled)
         texts, frames = timeline(request, self._pipeline.fps)
         critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
         match = None if critic is None else TextMatch(critic, texts)
         candidates = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given
-        track = config.track if track is None else track
         best = self._choose(candidates, match, request, robot, watch, repairs, track)
         trajectory = watch.run(
             "retargeting",
@@ -389,8 +396,6 @@ class Planner:
                 cancelled=watch.cancelled,
             ),
         )
-        if request.total_seconds > _LONG:
-            return_freed_memory()
         assert request.seed is not None
         return Plan(
             request=request,

@@ -52,12 +52,14 @@ def _sizes(held: object) -> dict[int, int]:
 
 def main(options: Options) -> None:
     """Plan, and print the figures as JSON."""
+    from motiondiffuse_ros.memory import return_freed_memory
     from motiondiffuse_ros.planner import Planner, PlannerConfig
     from motiondiffuse_ros.request import MotionRequest
 
     planner = Planner(PlannerConfig(candidates=options.candidates))
     text = "a person walks forward"
     planner.plan(MotionRequest.from_text(text, 2.0, seed=0))
+    return_freed_memory()
     forget_peak()
     before = memory_mb()["now"]
     plans = []
