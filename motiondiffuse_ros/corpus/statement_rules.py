@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from motiondiffuse_ros.corpus.travel import Travel
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
@@ -311,7 +310,7 @@ def _claps(body: _Body) -> bool:
     apart = np.linalg.norm(left - right, axis=-1)
     low, high = body.height + 0.1, body.level("head")
     chest = np.all([(w[:, 1] > low) & (w[:, 1] < high) for w in (left, right)], axis=0)
-    meet = find_peaks(-apart, height=-_CLAP, prominence=_PARTING)[0]
+    meet = _peaks(-apart, height=-_CLAP, prominence=_PARTING)
     level = np.abs(left[:, 1] - right[:, 1]) < _CLAP
     return int((chest & level)[meet].sum()) >= _CLAPS
 
@@ -377,7 +376,13 @@ def _swings(wrist: Array, raised: NDArray[np.bool_]) -> int:
         return 0
     path = wrist[frames[0] : frames[-1] + 1]
     turns = [
-        sum(len(find_peaks(sign * path[:, axis], prominence=_SWING)[0]) for sign in (1, -1))
+        sum(len(_peaks(sign * path[:, axis], prominence=_SWING)) for sign in (1, -1))
         for axis in (0, 2)
     ]
     return max(turns)
+
+
+def _peaks(values: Array, **least: float) -> NDArray[np.intp]:
+    from scipy.signal import find_peaks  # half a second that only training needs
+
+    return find_peaks(values, **least)[0]

@@ -11,6 +11,7 @@ from torch.nn import functional as F
 
 from motiondiffuse_ros.diffusion.attention import Attention, AttentionContext, pad_mask
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
+from motiondiffuse_ros.diffusion.initial import small_normal
 
 
 @dataclass(frozen=True)
@@ -152,12 +153,10 @@ class Denoiser(nn.Module):
             nn.Linear(width, time_width), nn.SiLU(), nn.Linear(time_width, time_width)
         )
         self.patch_in = nn.Linear(config.patch_size * config.feature_dim, width)
-        self.positions = nn.Parameter(
-            0.02 * torch.randn(config.max_frames // config.patch_size, width)
-        )
+        self.positions = small_normal(config.max_frames // config.patch_size, width)
         # zeros: weights without them can be trained on
         self.end_positions = (
-            nn.Parameter(torch.zeros_like(self.positions)) if config.end_positions else None
+            nn.Parameter(torch.zeros(self.positions.shape)) if config.end_positions else None
         )
         self.layers = nn.ModuleList(DecoderLayer(config) for _ in range(config.layers))
         self.norm = nn.LayerNorm(width)

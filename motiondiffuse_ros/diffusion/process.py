@@ -11,9 +11,9 @@ from torch import Tensor
 
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.errors import RequestError
-from motiondiffuse_ros.light_import import without_compiler
+from motiondiffuse_ros.light_import import light_import
 
-with without_compiler():
+with light_import():
     from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
     from diffusers.schedulers.scheduling_dpmsolver_multistep import DPMSolverMultistepScheduler
 

@@ -7,6 +7,7 @@ from torch import Tensor, nn
 from torch.nn import functional as F
 
 from motiondiffuse_ros.diffusion.attention import pad_mask
+from motiondiffuse_ros.diffusion.initial import small_normal
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 
 
@@ -19,8 +20,8 @@ class SequenceEncoder(nn.Module):
         super().__init__()
         width = config.width
         self.project = nn.Linear(input_dim, width)
-        self.summary = nn.Parameter(0.02 * torch.randn(width))
-        self.positions = nn.Parameter(0.02 * torch.randn(tokens, width))
+        self.summary = small_normal(width)
+        self.positions = small_normal(tokens, width)
         layer = nn.TransformerEncoderLayer(
             width,
             config.heads,

@@ -6,13 +6,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from motiondiffuse_ros.light_import import without_compiler
+from motiondiffuse_ros.light_import import light_import
 from motiondiffuse_ros.motion.contacts import CONTACT_JOINTS
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.frames import vectors_to_y_up
 from motiondiffuse_ros.motion.skeleton import CANONICAL
 
-with without_compiler():
+with light_import():
     import roma
 
 CONTACT_POSITIONS = tuple(CANONICAL.index(name) - 1 for name in CONTACT_JOINTS)

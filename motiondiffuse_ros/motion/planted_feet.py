@@ -18,7 +18,7 @@ from scipy.linalg import solveh_banded
 from torch import Tensor
 from torch.nn import functional as F
 
-from motiondiffuse_ros.light_import import without_compiler
+from motiondiffuse_ros.light_import import light_import
 from motiondiffuse_ros.motion.features import PoseState
 from motiondiffuse_ros.motion.kinematics import CONTACT_POSITIONS, PoseStateKinematics
 from motiondiffuse_ros.motion.rotations import Array
@@ -30,7 +30,7 @@ from motiondiffuse_ros.motion.skeleton import (
     TOE_HEIGHT,
 )
 
-with without_compiler():
+with light_import():
     import roma
 
 _CERTAIN = 0.15

@@ -8,9 +8,7 @@ import numpy as np
 from mink.limits import Constraint
 
 from motiondiffuse_ros.robots.robot import Robot
-
-DISTANCE = 0.006
-"""That solids keep from each other [m]."""
+from motiondiffuse_ros.robots.self_collision import DISTANCE
 
 _WATCHED = 0.03  # distance at which a pair begins to count [m]
 _MOST = 0.02  # by which a step moves a pair apart that is too near [m]

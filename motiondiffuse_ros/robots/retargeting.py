@@ -12,7 +12,6 @@ from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.physics.state import hinges_from_motion
 from motiondiffuse_ros.robots.embodiment import embodiment
 from motiondiffuse_ros.robots.foot_paths import foot_paths
-from motiondiffuse_ros.robots.inverse_kinematics import InverseKinematics
 from motiondiffuse_ros.robots.robot import Robot
 from motiondiffuse_ros.robots.self_collision import overlaps_between
 
@@ -94,6 +93,9 @@ def _followed(
     progress: Callable[[float], None] | None,
     cancelled: Callable[[], bool] | None,
 ) -> RobotMotion:
+    # mink and all the solvers that it knows take a fifth of a second to load
+    from motiondiffuse_ros.robots.inverse_kinematics import InverseKinematics
+
     feet = foot_paths(motion, embodiment(robot))
     qpos = InverseKinematics(robot).follow(motion, feet, progress, cancelled)
     return RobotMotion(qpos[:, :3], rot.continuous(qpos[:, 3:7]), qpos[:, 7:], motion.fps)

@@ -11,8 +11,10 @@ import numpy as np
 
 from motiondiffuse_ros.motion.rotations import Array
 from motiondiffuse_ros.motion.skeleton import SIDES
-from motiondiffuse_ros.robots.clearance import DISTANCE
 from motiondiffuse_ros.robots.robot import Robot
+
+DISTANCE = 0.006
+"""That solids keep from each other [m]."""
 
 OVERLAP = 0.005
 """Overlaps between two poses up to this [m] are let go."""

@@ -30,9 +30,9 @@ from motiondiffuse_ros.physics.tracking.reference import (
 CONTROL_RATE = 100.0
 """How often the controller's targets are renewed [Hz]."""
 
-_FIRST = 1000
-"""Frames of the reference that are made before any are known to be needed: most bodies fall soon,
-and ten minutes at this rate are a hundred megabytes."""
+_FIRST = 250
+"""Frames of the reference that are made before any are known to be needed, and then twice as many
+each time: most bodies fall soon, and ten minutes at this rate are a hundred megabytes."""
 
 _STEPS = round(1.0 / CONTROL_RATE / TIMESTEP)
 
@@ -87,7 +87,7 @@ def track(
     fell = diverged = False
     for frame in range(1, frames):
         if len(reference.qpos) < frames and frame == len(reference.qpos) - 1:
-            reference = _Reference.of(motion, frames)
+            reference = _Reference.of(motion, min(frames, 2 * len(reference.qpos)))
         if cancelled is not None and cancelled():
             raise Cancelled("tracking was cancelled")
         data.ctrl = reference.targets[frame]
