@@ -39,4 +39,4 @@ def return_freed_memory() -> None:
 
 def _set(options: dict[int, int]) -> bool:
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    return mallopt is not None and all([mallopt(*option) for option in options.items()])
+    return mallopt is not None and all(mallopt(*option) for option in options.items())

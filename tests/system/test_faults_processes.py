@@ -121,8 +121,8 @@ def test_200_cycles_of_configure_and_cleanup_and_weights_of_the_wrong_shape(grap
             assert operator.change(Transition.TRANSITION_CONFIGURE)
             assert operator.change(Transition.TRANSITION_CLEANUP)
             memory.append(resident_bytes(process.pid))
-        # Single figures differ by 100 MB, by how much the C library keeps of what was freed. What a
-        # cycle loses adds up: a tenth of these weights each time were 350 MB from the one to the other.
+        # Single figures differ by 100 MB, by how much the C library keeps of what was freed. What
+        # cycles lose adds up: 1 MB in each would be 50 MB at least.
         assert min(memory[150:]) - max(memory[50:100]) < 20e6
         assert operator.state() == State.PRIMARY_STATE_UNCONFIGURED
         assert operator.change(Transition.TRANSITION_CONFIGURE)
