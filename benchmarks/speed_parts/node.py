@@ -12,6 +12,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tyro
@@ -38,14 +39,14 @@ class NodeSpeed:
     """What was measured at the node.
 
     Attributes:
-        startup: From the start of the process to the first accepted goal, of each start [s].
+        startup: From the start of the process to the first accepted goal [s].
         text_to_plan: From publishing a sentence to its plan's arrival [s], each.
         first_setpoint: From publishing a sentence to the first set-point that came of it [s], each.
         rss: Resident memory after all of it [MiB].
         rss_peak: The most it ever had [MiB].
     """
 
-    startup: tuple[float, ...]
+    startup: float
     text_to_plan: tuple[float, ...]
     first_setpoint: tuple[float, ...]
     rss: float
@@ -61,17 +62,14 @@ class NodeSpeed:
             },
             "first_setpoint_s": float(np.median(self.first_setpoint)),
             "first_setpoint_all_s": list(self.first_setpoint),
-            "startup_s": float(np.median(self.startup)),
-            "startup_all_s": list(self.startup),
+            "startup_s": self.startup,
             "rss_mb": self.rss,
             "rss_peak_mb": self.rss_peak,
         }
 
 
-def measure_node(
-    seconds: float, repeats: int, starts: int, parameters: dict[str, object]
-) -> NodeSpeed:
-    """Start the node several times; ask the last one for motions, one after the other.
+def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) -> NodeSpeed:
+    """Start the node, and ask it for motions, one after the other.
 
     Every sentence is sent when the plan before it has come to its end: what a robot at rest
     waits for. The first answer does not count.
@@ -79,31 +77,22 @@ def measure_node(
     Args:
         seconds: Length of the motions [s].
         repeats: Sentences that count.
-        starts: Processes.
         parameters: Of the node, beside the length.
     """
     isolate(os.environ, os.getpid())
     arguments = ros_arguments(**{"default_seconds": seconds, **parameters})
-    startup: list[float] = []
-    with tempfile.TemporaryDirectory() as folder:
-        for start in range(starts):
-            with _Listener() as listener:
-                began = time.perf_counter()
-                log = Path(folder) / "node.log"
-                with running("motiondiffuse_ros.ros.node", arguments, log) as process:
-                    listener.wait_for_node(PATIENCE)
-                    goal = listener.send(request_of(seconds), lambda feedback: None, PATIENCE)
-                    startup.append(time.perf_counter() - began)
-                    listener.result(goal, PATIENCE)
-                    if start < starts - 1:
-                        continue
-                    answers = [listener.ask() for _ in range(repeats + 1)][1:]
-                    memory = memory_mb(process.pid)
-                    plans, setpoints = zip(*answers, strict=True)
-                    return NodeSpeed(
-                        tuple(startup), plans, setpoints, memory["now"], memory["peak"]
-                    )
-    raise AssertionError("the last start returns")
+    with tempfile.TemporaryDirectory() as folder, _Listener() as listener:
+        began = time.perf_counter()
+        log = Path(folder) / "node.log"
+        with running("motiondiffuse_ros.ros.node", arguments, log) as process:
+            listener.wait_for_node(PATIENCE)
+            goal = listener.send(request_of(seconds), lambda feedback: None, PATIENCE)
+            startup = time.perf_counter() - began
+            listener.result(goal, PATIENCE)
+            answers = [listener.ask() for _ in range(repeats + 1)][1:]
+            memory = memory_mb(process.pid)
+    plans, setpoints = zip(*answers, strict=True)
+    return NodeSpeed(startup, plans, setpoints, memory["now"], memory["peak"])
 
 
 def as_typed(parameters: Mapping[str, str]) -> dict[str, object]:
@@ -111,16 +100,31 @@ def as_typed(parameters: Mapping[str, str]) -> dict[str, object]:
     return {name: yaml.safe_load(text) for name, text in parameters.items()}
 
 
-def measure_streaming(
-    seconds: float, repeats: int, parameters: dict[str, object]
-) -> dict[str, object]:
-    """Return what a node with some parameters takes to its first set-points.
+def measure_apart(seconds: float, repeats: int, parameters: dict[str, object]) -> dict[str, Any]:
+    """Return what a process of its own measures with `measure_node`.
 
-    It is measured by a process of its own, which talks on a ROS graph of its own.
+    Nodes meet a second client of one process two seconds later than a first one.
     """
     told = [word for name, value in parameters.items() for word in (name, str(value))]
     words = ("--seconds", str(seconds), "--repeats", str(repeats), "--parameters", *told)
-    figures = measured_apart("benchmarks.speed_parts.node", *words)
+    return measured_apart("benchmarks.speed_parts.node", *words)
+
+
+def measure_starts(
+    seconds: float, repeats: int, starts: int, parameters: dict[str, object]
+) -> dict[str, Any]:
+    """Return what a node shows, with the median of several starts; the last one is asked."""
+    counts = [1] * (starts - 1) + [repeats]
+    runs = [measure_apart(seconds, count, parameters) for count in counts]
+    startup = [run["startup_s"] for run in runs]
+    return {**runs[-1], "startup_s": float(np.median(startup)), "startup_all_s": startup}
+
+
+def measure_streaming(
+    seconds: float, repeats: int, parameters: dict[str, object]
+) -> dict[str, object]:
+    """Return what a node with some parameters takes to its first set-points."""
+    figures = measure_apart(seconds, repeats, parameters)
     return {
         "parameters": parameters,
         **{name: figures[name] for name in ("first_setpoint_s", "first_setpoint_all_s")},
@@ -176,7 +180,7 @@ class Options:
 
 def main(options: Options) -> None:
     """Measure a node that is started once, and print the figures as JSON."""
-    speed = measure_node(options.seconds, options.repeats, 1, as_typed(options.parameters))
+    speed = measure_node(options.seconds, options.repeats, as_typed(options.parameters))
     print(json.dumps(speed.to_dict()))
 
 
