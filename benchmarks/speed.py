@@ -63,7 +63,9 @@ class Options:
     json: Path | None = None
     """Where to write the figures."""
     docs: Path | None = None
-    """Document whose tables are replaced; the plot goes beside it."""
+    """Document whose tables are replaced."""
+    marks: str = "speed"
+    """Name of the marks between which they stand; the plot beside the document is of `speed`."""
     from_json: Path | None = None
     """Measure nothing: take the figures of an earlier run, to print or document them again."""
 
@@ -110,8 +112,9 @@ def main(options: Options) -> None:
     if options.json is not None:
         options.json.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
     if options.docs is not None:
-        write_between_marks(options.docs, "speed", markdown(record))
-        draw(record["lengths"], record["attention"], options.docs.parent / "scaling.png")
+        write_between_marks(options.docs, options.marks, markdown(record))
+        if options.marks == Options.marks:
+            draw(record["lengths"], record["attention"], options.docs.parent / "scaling.png")
 
 
 if __name__ == "__main__":

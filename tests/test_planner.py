@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -56,6 +57,14 @@ def test_the_same_seed_gives_the_same_motion(planner, plan):
     again = planner.plan(result.request)
     np.testing.assert_array_equal(again.motion.rotations, result.motion.rotations)
     np.testing.assert_array_equal(again.trajectory.positions, result.trajectory.positions)
+
+
+def test_candidates_are_matched_with_the_text_only_to_choose_among_them(planner, plan):
+    chosen, _ = plan
+    assert chosen.text_match is not None
+    assert -2.0 <= chosen.text_match <= 2.0
+    alone = planner.plan(replace(chosen.request, candidates=1))
+    assert alone.to_dict()["text_match"] is None
 
 
 def test_a_drawn_seed_is_recorded_and_reproduces(planner):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.signal import savgol_filter
 from synthetic import drifting, moved, smooth_motions, standing, turned, waving
 
 from motiondiffuse_ros.motion import Motion
@@ -107,6 +108,15 @@ def test_smoothing_keeps_speed_and_acceleration_of_the_root():
     times = np.arange(40)[:, None] / 20.0
     thrown = moved(standing(40), times * [1.0, 0.5, 4.0] - 4.905 * times**2 * UP)
     assert np.allclose(smooth_root(thrown).root, thrown.root, atol=1e-9)
+
+
+@pytest.mark.parametrize("fps", [20.0, 60.0])
+def test_smoothing_of_the_root_is_that_of_savitzky_and_golay(fps):
+    shaky = np.random.default_rng(0).normal(scale=0.01, size=(50, 3))
+    still = standing(50)
+    smooth = smooth_root(Motion(still.root + shaky, still.rotations, fps)).root
+    frames = 7 if fps == 20.0 else 21
+    assert np.allclose(smooth, savgol_filter(still.root + shaky, frames, 3, axis=0), atol=1e-9)
 
 
 @given(st.floats(0.3, 0.79), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(0.3, 1.5))
