@@ -25,7 +25,7 @@ class Operator(MotionClient):
         if name not in self._services:  # each one that is made stays in the other side's memory
             self._services[name] = self.node.create_client(kind, f"/motiondiffuse/{name}")
         service = self._services[name]
-        self.wait(service.service_is_ready, START, name)
+        self.wait(lambda: self.heard and service.service_is_ready(), START, name)
         future = service.call_async(request)
         self.wait(future.done, ANSWER, f"an answer of {name}")
         return future.result()

@@ -95,6 +95,15 @@ class MotionClient:
         """Handle the next ROS event that comes within `seconds`."""
         self._executor.spin_once(timeout_sec=seconds)
 
+    @property
+    def heard(self) -> bool:
+        """Whether the node has said how it is.
+
+        Then it has met this client, too: it can be seen seconds before, and what it answers until
+        then is lost.
+        """
+        return bool(self.health.name)
+
     def wait_for_node(self, timeout: float) -> None:
         """Wait until the node takes goals, for at most `timeout` seconds.
 
@@ -104,7 +113,9 @@ class MotionClient:
         """
 
         def answered() -> bool:
-            return self.action.server_is_ready() or self.health.level == DiagnosticStatus.ERROR
+            if self.health.level == DiagnosticStatus.ERROR:
+                return True
+            return self.heard and self.action.server_is_ready()
 
         self.wait(answered, timeout, "the node motiondiffuse")
         if not self.action.server_is_ready():
