@@ -34,41 +34,7 @@ QUIET = 1.0
 """A stream of set-points that paused for longer has ended [s]."""
 
 
-@dataclass(frozen=True)
-class NodeSpeed:
-    """What was measured at the node.
-
-    Attributes:
-        startup: From the start of the process to the first accepted goal [s].
-        text_to_plan: From publishing a sentence to its plan's arrival [s], each.
-        first_setpoint: From publishing a sentence to the first set-point that came of it [s], each.
-        rss: Resident memory after all of it [MiB].
-        rss_peak: The most it ever had [MiB].
-    """
-
-    startup: float
-    text_to_plan: tuple[float, ...]
-    first_setpoint: tuple[float, ...]
-    rss: float
-    rss_peak: float
-
-    def to_dict(self) -> dict[str, object]:
-        """Return the contract's keys that come from here."""
-        return {
-            "text_to_plan_s": {
-                "median": float(np.median(self.text_to_plan)),
-                "p95": float(np.percentile(self.text_to_plan, 95)),
-                "all": list(self.text_to_plan),
-            },
-            "first_setpoint_s": float(np.median(self.first_setpoint)),
-            "first_setpoint_all_s": list(self.first_setpoint),
-            "startup_s": self.startup,
-            "rss_mb": self.rss,
-            "rss_peak_mb": self.rss_peak,
-        }
-
-
-def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) -> NodeSpeed:
+def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) -> dict[str, Any]:
     """Start the node, and ask it for motions, one after the other.
 
     Every sentence is sent when the plan before it has come to its end: what a robot at rest
@@ -78,6 +44,12 @@ def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) ->
         seconds: Length of the motions [s].
         repeats: Sentences that count.
         parameters: Of the node, beside the length.
+
+    Returns:
+        `startup_s`, from the start of the process to the first accepted goal; `text_to_plan_s`,
+        from publishing a sentence to its plan's arrival; `first_setpoint_s`, to the first set-point
+        that came of it; `rss_mb` and `rss_peak_mb`, resident memory after all of it and the most it
+        ever was [MiB].
     """
     isolate(os.environ, os.getpid())
     arguments = ros_arguments(**{"default_seconds": seconds, **parameters})
@@ -92,7 +64,18 @@ def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) ->
             answers = [listener.ask() for _ in range(repeats + 1)][1:]
             memory = memory_mb(process.pid)
     plans, setpoints = zip(*answers, strict=True)
-    return NodeSpeed(startup, plans, setpoints, memory["now"], memory["peak"])
+    return {
+        "text_to_plan_s": {
+            "median": float(np.median(plans)),
+            "p95": float(np.percentile(plans, 95)),
+            "all": list(plans),
+        },
+        "first_setpoint_s": float(np.median(setpoints)),
+        "first_setpoint_all_s": list(setpoints),
+        "startup_s": startup,
+        "rss_mb": memory["now"],
+        "rss_peak_mb": memory["peak"],
+    }
 
 
 def as_typed(parameters: Mapping[str, str]) -> dict[str, object]:
@@ -100,10 +83,10 @@ def as_typed(parameters: Mapping[str, str]) -> dict[str, object]:
     return {name: yaml.safe_load(text) for name, text in parameters.items()}
 
 
-def measure_apart(seconds: float, repeats: int, parameters: dict[str, object]) -> dict[str, Any]:
+def _node_apart(seconds: float, repeats: int, parameters: dict[str, object]) -> dict[str, Any]:
     """Return what a process of its own measures with `measure_node`.
 
-    Nodes meet a second client of one process two seconds later than a first one.
+    A second measurement in the same process was seen to hang.
     """
     told = [word for name, value in parameters.items() for word in (name, str(value))]
     words = ("--seconds", str(seconds), "--repeats", str(repeats), "--parameters", *told)
@@ -115,7 +98,7 @@ def measure_starts(
 ) -> dict[str, Any]:
     """Return what a node shows, with the median of several starts; the last one is asked."""
     counts = [1] * (starts - 1) + [repeats]
-    runs = [measure_apart(seconds, count, parameters) for count in counts]
+    runs = [_node_apart(seconds, count, parameters) for count in counts]
     startup = [run["startup_s"] for run in runs]
     return {**runs[-1], "startup_s": float(np.median(startup)), "startup_all_s": startup}
 
@@ -124,7 +107,7 @@ def measure_streaming(
     seconds: float, repeats: int, parameters: dict[str, object]
 ) -> dict[str, object]:
     """Return what a node with some parameters takes to its first set-points."""
-    figures = measure_apart(seconds, repeats, parameters)
+    figures = _node_apart(seconds, repeats, parameters)
     return {
         "parameters": parameters,
         **{name: figures[name] for name in ("first_setpoint_s", "first_setpoint_all_s")},
@@ -180,8 +163,8 @@ class Options:
 
 def main(options: Options) -> None:
     """Measure a node that is started once, and print the figures as JSON."""
-    speed = measure_node(options.seconds, options.repeats, as_typed(options.parameters))
-    print(json.dumps(speed.to_dict()))
+    parameters = as_typed(options.parameters)
+    print(json.dumps(measure_node(options.seconds, options.repeats, parameters)))
 
 
 if __name__ == "__main__":

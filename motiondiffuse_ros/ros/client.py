@@ -113,9 +113,8 @@ class MotionClient:
         """
 
         def answered() -> bool:
-            if self.health.level == DiagnosticStatus.ERROR:
-                return True
-            return self.heard and self.action.server_is_ready()
+            failed = self.health.level == DiagnosticStatus.ERROR
+            return failed or (self.heard and self.action.server_is_ready())
 
         self.wait(answered, timeout, "the node motiondiffuse")
         if not self.action.server_is_ready():
