@@ -28,7 +28,7 @@ class Sampling:
     guidance_scale: float = PlannerConfig.guidance_scale
     """Weight of the text."""
     steps: int = PlannerConfig.steps
-    """Denoising steps."""
+    """Denoising steps; 0 is as few as the weights need."""
 
 
 def sample_prompts(
@@ -46,4 +46,6 @@ def sample_prompts(
     for text, seed in track([(t, s) for t in plans for s in range(seeds)], "sampling"):
         plans[text].append(planner.plan(MotionRequest.from_text(text, SECONDS, seed=seed)))
     del settings["weights"]
-    return plans, {"weights_sha256": planner.weights_sha256, "seeds": seeds, **settings}
+    plan = next(iter(plans.values()))[0]
+    used = {"weights_sha256": plan.weights_sha256, "steps": plan.request.steps}
+    return plans, {"seeds": seeds, **settings, **used}

@@ -68,7 +68,7 @@ class PlannerConfig:
         weights: Checkpoint folder; None is the shipped one.
         text_encoder: Folder of the text encoder's files, if the checkpoint was trained with CLIP.
         scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
-        steps: Denoising steps.
+        steps: Denoising steps; 0 is as few as the weights need (`MotionPipeline.completed`).
         guidance_scale: Classifier-free guidance.
         part_correction: λ₁ of eq. 10; see `SamplerConfig`.
         time_correction: λ₂ of eq. 11.
@@ -193,7 +193,7 @@ class Plan:
     Attributes:
         request: With all defaults filled in.
         seed: Of all randomness; with the same weights and settings it gives the same motion.
-        weights_sha256: Hash of the weights file.
+        weights_sha256: Hash of the weights file that was sampled with.
         robot: Name of the robot, or its description file.
         motion: The chosen candidate, its stance put on the floor.
         trajectory: For the robot's controller.
@@ -310,6 +310,18 @@ class Planner:
         """Frame rate of the motions, Hz."""
         return self._pipeline.fps
 
+    def completed(self, request: MotionRequest) -> MotionRequest:
+        """Return a request with all defaults filled in but the seed."""
+        config = self.config
+        request = request.with_defaults(
+            duration=request.total_seconds,
+            guidance_scale=config.guidance_scale,
+            candidates=config.candidates,
+        )
+        assert request.guidance_scale is not None
+        sampler = self._pipeline.completed(config.sampler(config.steps, request.guidance_scale))
+        return request.with_defaults(steps=sampler.steps)
+
     def restarted(self, plan: Plan, state: StartState) -> Plan:
         """Return a plan that starts from another state than it was made for.
 
@@ -369,17 +381,11 @@ class Planner:
         self, request: MotionRequest, robot: Robot, start: Start, track: bool, watch: _Stages
     ) -> Plan:
         config, origin = self.config, Origin(request, start)
-        request = request.with_defaults(
-            duration=request.total_seconds,
-            seed=secrets.randbelow(_MAX_DRAWN_SEED),
-            guidance_scale=config.guidance_scale,
-            steps=config.steps,
-            candidates=config.candidates,
-        )
+        request = self.completed(request).with_defaults(seed=secrets.randbelow(_MAX_DRAWN_SEED))
         texts, frames = timeline(request, self._pipeline.fps)
         critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
         match = None if critic is None else TextMatch(critic, texts)
-        candidates = self._sample(request, start, texts, frames, match, watch)
+        candidates, sha256 = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given
         best = self._choose(candidates, match, request, robot, watch, repairs, track)
@@ -400,7 +406,7 @@ class Planner:
         return Plan(
             request=request,
             seed=request.seed,
-            weights_sha256=self.weights_sha256,
+            weights_sha256=sha256,
             robot=robot.name,
             motion=best.motion,
             trajectory=trajectory,
@@ -420,8 +426,9 @@ class Planner:
         frames: int,
         match: TextMatch | None,
         watch: _Stages,
-    ) -> dict[int, Motion]:
-        """Return the motions of the candidates that were sampled to the end."""
+    ) -> tuple[dict[int, Motion], str]:
+        """Return the motions of the candidates that were sampled to the end, and by which weights.
+        """
         assert request.guidance_scale is not None
         assert request.steps is not None
         assert request.candidates is not None
@@ -458,7 +465,7 @@ class Planner:
         watch.record("text", samples.text_seconds)
         watch.record("sampling", samples.sampling_seconds)
         finished = (self._finished(m, start, before, edited) for m in samples.motions)
-        return dict(zip(samples.candidates, finished, strict=True))
+        return dict(zip(samples.candidates, finished, strict=True)), samples.weights_sha256
 
     def _given(
         self, request: MotionRequest, start: Start, frames: int

@@ -68,6 +68,7 @@ def main(arguments: Sequence[str]) -> int:
     )
     weights = options.weights or shipped_weights()
     pipeline = MotionPipeline.from_pretrained(weights, options.text_encoder)
+    sampler = pipeline.completed(options.sampler)
     for what, name in (
         ("weights", pipeline.representation.name),
         ("evaluator", evaluator.representation),
@@ -89,7 +90,7 @@ def main(arguments: Sequence[str]) -> int:
         sampled = bar.add_task("sampling", total=None)
         model = Model(
             pipeline,
-            options.sampler,
+            sampler,
             lambda done, total: bar.update(sampled, completed=done, total=total),
         )
         others = corpus.split("all" if options.split == "all" else "train")
@@ -118,9 +119,9 @@ def main(arguments: Sequence[str]) -> int:
         "clips": len(corpus.split(options.split)),
         "repeats": options.protocol.repeats,
         "weights": weights.name,
-        "weights_sha256": pipeline.weights_sha256,
+        "weights_sha256": pipeline.sha256_of(sampler),
         "evaluator_sha256": evaluator.sha256,
-        "sampler": vars(options.sampler),
+        "sampler": vars(sampler),
         "protocol": options.protocol.to_dict(),
         "rows": rows_to_json(texts),
         "actions": None if actions is None else rows_to_json(actions),

@@ -15,6 +15,7 @@ COMMANDS: dict[str, tuple[str, str, str]] = {
     "check": ("physics verdict on a BVH or npz file", "check", "main"),
     "corpus": ("build a training corpus; fetch NAME tells where originals are", "corpus", "main"),
     "train": ("train a denoiser on a corpus", "train", "main"),
+    "distill": ("teach a denoiser to need few steps", "distill", "main"),
     "evaluate": ("the paper's tables for a set of weights", "evaluate", "main"),
     "train-evaluator": ("train the ruler that evaluate uses", "train_evaluator", "main"),
     "node": ("the ROS 2 lifecycle node", "node", "node_main"),

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -19,7 +20,7 @@ from motiondiffuse_ros.diffusion.constraints import (
     KeptFeatures,
     OnPlainFeatures,
 )
-from motiondiffuse_ros.diffusion.denoiser import Conditioning
+from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.denoising import Planting
 from motiondiffuse_ros.diffusion.sampler import sample, sample_batch
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
@@ -44,14 +45,24 @@ class Samples:
     Attributes:
         motions: One per candidate that went on; starts over the origin, facing +x.
         candidates: Which those are, rising.
+        weights_sha256: Hash of the weights file that was used.
         text_seconds: Time spent on the text encoder, s.
         sampling_seconds: Time spent on denoising, s.
     """
 
     motions: tuple[Motion, ...]
     candidates: tuple[int, ...]
+    weights_sha256: str
     text_seconds: float
     sampling_seconds: float
+
+
+class _Weights(NamedTuple):
+    """What answers to a sampler, and how it is sampled itself."""
+
+    denoiser: Denoiser
+    config: SamplerConfig
+    sha256: str
 
 
 class MotionPipeline:
@@ -95,8 +106,11 @@ class MotionPipeline:
             TextEncoderError: If the encoder cannot be used.
         """
         checkpoint = Checkpoint.from_pretrained(folder)
+        few = checkpoint.few_steps
         try:
             checkpoint.denoiser.to(device)
+            if few is not None:
+                few.denoiser.to(device)
         except (RuntimeError, AssertionError) as error:
             raise CheckpointError(f"device '{device}' cannot be used: {error}") from error
         name = checkpoint.denoiser.config.text_encoder
@@ -126,6 +140,23 @@ class MotionPipeline:
     def weights_sha256(self) -> str:
         """Hash of the weights file."""
         return self._checkpoint.sha256
+
+    def completed(self, config: SamplerConfig) -> SamplerConfig:
+        """Return a sampler with as few steps as the weights need, if it sets none."""
+        few = self._checkpoint.few_steps
+        if few is None or not few.fit(config):
+            return config.completed()
+        return config.completed(few.stand_for.steps)
+
+    def sha256_of(self, config: SamplerConfig) -> str:
+        """Return the hash of the weights file that answers to a sampler."""
+        return self._weights_for(config).sha256
+
+    def _weights_for(self, config: SamplerConfig) -> _Weights:
+        config, few = self.completed(config), self._checkpoint.few_steps
+        if few is not None and few.fit(config) and config.steps == few.stand_for.steps:
+            return _Weights(few.denoiser, few.sampler(config), few.sha256)
+        return _Weights(self._checkpoint.denoiser, config, self._checkpoint.sha256)
 
     def on_path(self, points: Sequence[PathPoint], frames: int) -> Constraint:
         """Return the constraint that the root passes points; see `RootPath`.
@@ -189,7 +220,7 @@ class MotionPipeline:
             assert choose is not None
             return choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
 
-        denoiser = self._checkpoint.denoiser
+        denoiser, config, sha256 = self._weights_for(config)
         windows = compose(
             texts,
             frames,
@@ -199,7 +230,7 @@ class MotionPipeline:
         )
         began = time.perf_counter()
         distinct = list(dict.fromkeys(w.text for w in windows))
-        every = self._condition([*distinct, ""])
+        every = self._condition(denoiser, [*distinct, ""])
         encoded = time.perf_counter()
         sampled = sample(
             denoiser,
@@ -218,7 +249,13 @@ class MotionPipeline:
             cancelled=cancelled,
         )
         motions = tuple(map(self._decode, sampled.features))
-        return Samples(motions, sampled.candidates, encoded - began, time.perf_counter() - encoded)
+        return Samples(
+            motions,
+            sampled.candidates,
+            sha256,
+            encoded - began,
+            time.perf_counter() - encoded,
+        )
 
     def batch(
         self,
@@ -238,13 +275,14 @@ class MotionPipeline:
             seed: Of all noise.
             on_progress: Called with (motions done, motions in all).
         """
+        denoiser, config, _ = self._weights_for(config)
         order = sorted(range(len(texts)), key=lambda i: frames[i])  # like lengths share a batch
         motions: dict[int, Motion] = {}
         for start in range(0, len(order), _BATCH_ROWS):
             rows = order[start : start + _BATCH_ROWS]
-            every = self._condition([*(texts[i] for i in rows), ""])
+            every = self._condition(denoiser, [*(texts[i] for i in rows), ""])
             features = sample_batch(
-                self._checkpoint.denoiser,
+                denoiser,
                 torch.tensor([frames[i] for i in rows]),
                 every.expand(torch.arange(len(rows))),
                 every.expand(torch.tensor([len(rows)])),
@@ -268,8 +306,7 @@ class MotionPipeline:
             )
         )
 
-    def _condition(self, texts: Sequence[str]) -> Conditioning:
-        denoiser = self._checkpoint.denoiser
+    def _condition(self, denoiser: Denoiser, texts: Sequence[str]) -> Conditioning:
         tokens = self._encoder.encode(texts)
         with torch.inference_mode():
             return denoiser.condition(

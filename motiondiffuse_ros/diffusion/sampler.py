@@ -80,6 +80,7 @@ def sample(
         SamplingError: If the result is not finite.
     """
     config.validate()
+    config = config.completed()
     generator = torch.Generator().manual_seed(seed)
     predict = WindowedPrediction(
         _guided(denoiser, config, conditioning, unconditional),
@@ -113,7 +114,7 @@ def sample(
         count = min(size, candidates - first)
         run = Denoising(
             predict,
-            _noise((count, frames, denoiser.config.feature_dim), generator),
+            centred_noise((count, frames, denoiser.config.feature_dim), generator),
             denoiser,
             config,
             generator,
@@ -175,8 +176,9 @@ def sample_batch(
         SamplingError: If the result is not finite.
     """
     config.validate()
+    config = config.completed()
     generator = torch.Generator().manual_seed(seed)
-    x = _noise((len(lengths), int(lengths.max()), denoiser.config.feature_dim), generator)
+    x = centred_noise((len(lengths), int(lengths.max()), denoiser.config.feature_dim), generator)
     lengths = lengths.to(denoiser.device)
     guided = _guided(denoiser, config, conditioning, unconditional)
     rows = torch.arange(len(lengths))
@@ -187,12 +189,12 @@ def sample_batch(
     return Denoising(predict, x, denoiser, config, generator, planted=planted).finish()
 
 
-def _noise(shape: tuple[int, int, int], generator: torch.Generator) -> Tensor:
+def centred_noise(shape: Sequence[int], generator: torch.Generator | None) -> Tensor:
     """Return what sampling starts from: noise [B, T, D] whose mean over time is zero.
 
     The denoiser reads a mean as the hint of a heading or a speed, though the text says another.
     """
-    noise = torch.randn(shape, generator=generator)
+    noise = torch.randn(tuple(shape), generator=generator)
     return noise - noise.mean(dim=1, keepdim=True)
 
 

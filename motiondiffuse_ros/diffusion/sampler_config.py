@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from motiondiffuse_ros.diffusion.precision import check_precision
 from motiondiffuse_ros.diffusion.process import SCHEDULERS
 from motiondiffuse_ros.errors import RequestError
+
+STEPS = 8
+"""Steps of DPM-Solver++ that weights need which were not taught to need fewer."""
 
 _FRACTIONS = (
     "part_correction",
@@ -23,7 +26,7 @@ class SamplerConfig:
 
     Attributes:
         scheduler: One of `SCHEDULERS`.
-        steps: Denoising steps.
+        steps: Denoising steps; 0 is as few as the weights need.
         spacing: How much denser they are where there is more noise; see `denoising_steps`.
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
         guidance_interval: Noise levels, as part of the training steps, between which guidance is
@@ -41,7 +44,7 @@ class SamplerConfig:
     """
 
     scheduler: str = "dpm-solver++"
-    steps: int = 8
+    steps: int = 0
     spacing: float = 2.5
     guidance_scale: float = 4.0
     guidance_interval: tuple[float, float] = (0.8, 1.0)
@@ -59,8 +62,8 @@ class SamplerConfig:
                 f"unknown scheduler '{self.scheduler}'; the schedulers are {', '.join(SCHEDULERS)}"
             )
         check_precision(self.precision)
-        if not 1 <= self.steps <= 1000:
-            raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
+        if not 0 <= self.steps <= 1000:
+            raise RequestError(f"steps must be from 0 to 1000, got {self.steps}")
         if not 1.0 <= self.spacing <= 5.0:
             raise RequestError(f"spacing must be from 1 to 5, got {self.spacing}")
         for name in _FRACTIONS:
@@ -71,6 +74,10 @@ class SamplerConfig:
             raise RequestError(
                 f"guidance_interval must be two rising numbers from 0 to 1, got {low}, {high}"
             )
+
+    def completed(self, steps: int = STEPS) -> SamplerConfig:
+        """Return the sampler with this number of steps, if it sets none."""
+        return replace(self, steps=self.steps or steps)
 
     def guidance_at(self, noise: float) -> float:
         """Return the guidance scale at a noise level, 0 (clean) to 1."""

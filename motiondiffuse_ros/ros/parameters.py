@@ -111,7 +111,9 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "record_dir": ParameterSpec("", "folder in which each plan is recorded as MCAP; empty = none"),
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
     "steps": ParameterSpec(
-        _DEFAULT.steps, "denoising steps of requests that set none", (1, LIMITS.max_steps)
+        _DEFAULT.steps,
+        "denoising steps of requests that set none; 0 = as few as the weights need",
+        (0, LIMITS.max_steps),
     ),
     "guidance_scale": ParameterSpec(
         _DEFAULT.guidance_scale,
@@ -172,7 +174,7 @@ def complete(request: MotionRequest, parameters: Parameters) -> MotionRequest:
     """Return the request with what it leaves open filled in from the parameters."""
     seed = parameters["seed"]
     return request.with_defaults(
-        steps=parameters["steps"],
+        steps=parameters["steps"] or None,
         guidance_scale=parameters["guidance_scale"],
         candidates=parameters["candidates"],
         seed=None if seed < 0 else seed,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -28,6 +27,7 @@ from motiondiffuse_ros.training.alignment import TextAlignment
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
+from motiondiffuse_ros.training.optimisation import learning_rate, parameter_groups
 from motiondiffuse_ros.training.ranks import ALONE, Ranks
 from motiondiffuse_ros.training.text_to_prediction import TextToPrediction
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of
@@ -99,7 +99,10 @@ class Trainer:
         if start is not None:
             self._start_from(start)
         self._optimizer = torch.optim.AdamW(
-            self._parameter_groups(), lr=config.learning_rate, betas=(0.9, 0.99), fused=True
+            parameter_groups(self.denoiser, config.weight_decay),
+            lr=config.learning_rate,
+            betas=(0.9, 0.99),
+            fused=True,
         )
         self._ema = EMAModel(
             self.denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
@@ -288,10 +291,12 @@ class Trainer:
         return losses, self._alignment(pooled, texts)
 
     def _learning_rate(self) -> float:
-        warmup = min(1.0, (self._step + 1) / max(self._config.warmup_steps, 1))
-        done = min(1.0, self._seconds / (60.0 * self._config.minutes))
-        # ends at 1 % rather than zero: the last minutes of a run still learn
-        return self._config.learning_rate * warmup * (0.505 + 0.495 * math.cos(math.pi * done))
+        return learning_rate(
+            self._config.learning_rate,
+            step=self._step,
+            warmup_steps=self._config.warmup_steps,
+            done=self._seconds / (60.0 * self._config.minutes),
+        )
 
     def _start_from(self, start: Checkpoint) -> None:
         theirs, ours = start.denoiser.config, self.denoiser.config
@@ -310,14 +315,6 @@ class Trainer:
         self.denoiser.load_state_dict(
             start.denoiser.state_dict(), strict=theirs.end_positions == ours.end_positions
         )
-
-    def _parameter_groups(self) -> list[dict]:
-        matrices = [p for p in self.denoiser.parameters() if p.ndim > 1]
-        rest = [p for p in self.denoiser.parameters() if p.ndim <= 1]
-        return [
-            {"params": matrices, "weight_decay": self._config.weight_decay},
-            {"params": rest, "weight_decay": 0.0},
-        ]
 
     def _load_state(self) -> None:
         path = self._out / STATE_FILE

@@ -1,0 +1,377 @@
+"""Distillation: a student learns to go in one step where its teacher goes in two, guided ones."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from copy import deepcopy
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import torch
+from diffusers.training_utils import EMAModel
+from torch import Tensor
+
+from motiondiffuse_ros.corpus.store import Corpus
+from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
+from motiondiffuse_ros.diffusion.constraints import OnPlainFeatures
+from motiondiffuse_ros.diffusion.few_steps import FewSteps, FewStepsOf
+from motiondiffuse_ros.diffusion.guidance import GuidedDenoiser
+from motiondiffuse_ros.diffusion.precision import use_bf16
+from motiondiffuse_ros.diffusion.process import denoising_steps, make_scheduler, to_clean
+from motiondiffuse_ros.diffusion.sampler import centred_noise
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
+from motiondiffuse_ros.motion.planted_feet import WHILE_DENOISING, PlantedFeet
+from motiondiffuse_ros.text import TextEncoder
+from motiondiffuse_ros.training.distill_config import DistillConfig
+from motiondiffuse_ros.training.losses import Losses, MotionLoss
+from motiondiffuse_ros.training.optimisation import learning_rate, parameter_groups
+from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of
+from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
+
+CHECKPOINT_FOLDER = "checkpoint"
+_VALIDATION_BATCHES = 4
+_VALIDATION_SEED = 1234
+
+
+@dataclass(frozen=True)
+class Jump:
+    """What the student does in one step and its teacher in two.
+
+    Attributes:
+        start: Diffusion step from which both go.
+        middle: The teacher's second.
+        end: Where both arrive; None is the clean motion.
+    """
+
+    start: int
+    middle: int
+    end: int | None
+
+
+def jumps(steps: int, spacing: float, train_steps: int) -> list[Jump]:
+    """Return the jumps of a student of so many steps; see `denoising_steps`."""
+    times: list[int | None] = [*denoising_steps(2 * steps, spacing, train_steps), None]
+    found = []
+    for i in range(0, 2 * steps, 2):
+        start, middle = times[i], times[i + 1]
+        assert start is not None
+        assert middle is not None
+        found.append(Jump(start, middle, times[i + 2]))
+    return found
+
+
+class Levels:
+    """A noise schedule, as signal and noise at its steps."""
+
+    def __init__(self, alphas_cumprod: Tensor) -> None:
+        self._alphas = alphas_cumprod.double().tolist()
+
+    def __call__(self, step: int | None) -> tuple[float, float]:
+        """Return the shares of signal and of noise; None is the clean motion."""
+        alpha = 1.0 if step is None else self._alphas[step]
+        return math.sqrt(alpha), math.sqrt(1.0 - alpha)
+
+    def moved(self, x: Tensor, clean: Tensor, start: int, end: int | None) -> Tensor:
+        """Return where a step of first order goes (DDIM, Song et al. 2021).
+
+        Args:
+            x: Noisy features at `start`.
+            clean: What they are predicted to become.
+            start: Diffusion step.
+            end: The next one; None is the clean motion.
+        """
+        keep, add = self._parts(start, end)
+        return keep * x + add * clean
+
+    def aim(self, x: Tensor, moved: Tensor, start: int, end: int | None) -> Tensor:
+        """Return what must be predicted for a step of first order to arrive at `moved`."""
+        keep, add = self._parts(start, end)
+        return (moved - keep * x) / add
+
+    def _parts(self, start: int, end: int | None) -> tuple[float, float]:
+        (signal, noise), (signal_end, noise_end) = self(start), self(end)
+        keep = noise_end / noise
+        return keep, signal_end - keep * signal
+
+    def lead(self, start: int, middle: int, end: int | None) -> float:
+        """Return how far the second of two steps goes on in the direction of their predictions.
+
+        DPM-Solver++ of second order (Lu et al. 2022, algorithm 2); a step to the clean motion is
+        of first order, as in diffusers.
+        """
+        if end is None:
+            return 0.0
+        first, second, third = (math.log(s / n) for s, n in map(self, (start, middle, end)))
+        return (third - second) / (2.0 * (second - first))
+
+
+@dataclass(frozen=True)
+class DistillProgress:
+    """Where a run stands.
+
+    Attributes:
+        step: Optimiser steps done.
+        minutes: Time so far.
+        loss: Running mean of the loss on features.
+        validation: Last difference of whole samples from the teacher's, None before the first.
+    """
+
+    step: int
+    minutes: float
+    loss: float
+    validation: float | None
+
+
+class Distiller:
+    """Teaches a student the teacher's guided steps, two at a time (Salimans and Ho 2022).
+
+    Guidance is learnt with them (Meng et al. 2023), so that the student needs one pass a step. It
+    starts from noise and goes on from where its own steps lead, and at each of them is taught where
+    the teacher would have gone from there.
+
+    Writes under `out`: checkpoint/ (averaged weights), config.json and log.jsonl.
+
+    Attributes:
+        student: What is trained.
+    """
+
+    def __init__(
+        self,
+        corpus: Corpus,
+        encoder: TextEncoder,
+        teacher: Checkpoint,
+        config: DistillConfig,
+        out: Path,
+        *,
+        student: FewSteps | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            corpus: Whose texts and lengths are asked for.
+            encoder: The teacher's.
+            teacher: Weights to learn from.
+            config: Of the run.
+            out: Folder of the run.
+            student: Of which to start; the teacher's weights if None.
+            clock: Of the run's time [s].
+        """
+        config.validate()
+        self._sampler, self._stand_for = SamplerConfig(), FewStepsOf(config.steps)
+        self._corpus, self._config, self._out, self._clock = corpus, config, out, clock
+        self._teacher, self._stopping = teacher, False
+        start = teacher if student is None else student
+        shape = teacher.denoiser.config
+        self._jumps = jumps(config.steps, self._sampler.spacing, shape.train_steps)
+        self._levels = Levels(make_scheduler("ddpm", shape).alphas_cumprod)
+        self.student = deepcopy(start.denoiser).train()
+        self._optimizer = torch.optim.AdamW(
+            parameter_groups(self.student, config.weight_decay),
+            lr=config.learning_rate,
+            betas=(0.9, 0.99),
+            fused=True,
+        )
+        self._ema = EMAModel(
+            self.student.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
+        )
+        self._bf16 = use_bf16(config.precision)
+        self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
+        self._planted = OnPlainFeatures(
+            PlantedFeet(corpus.fps, WHILE_DENOISING), corpus.statistics
+        )
+        self._step, self._seconds = 0, 0.0
+        train, val = corpus.split("train"), corpus.split("val")
+        windows = WindowSampler(
+            corpus,
+            train,
+            max_frames=shape.max_frames,
+            mirror=0.5,
+            other_words=other_words_of,
+            statements=config.statements,
+            deeds=config.deeds,
+            crop=0.5,
+            seed=config.seed,
+        )
+        held_out = WindowSampler(
+            corpus, val, max_frames=shape.max_frames, mirror=0.5, crop=0.5, seed=_VALIDATION_SEED
+        )
+        texts = all_captions((*train, *val), windows.stated_texts())
+        self._captions = CaptionStates(texts, encoder)
+        self._windows = windows.batches(config.batch_size)
+        batches = held_out.batches(config.batch_size)
+        self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]
+        torch.manual_seed(config.seed)  # the same noise whatever was drawn before
+        out.mkdir(parents=True, exist_ok=True)
+        settings = {
+            "distilling": config.to_dict(),
+            "sampler": asdict(self._sampler),
+            "teacher": teacher.sha256,
+            "started_from": start.sha256,
+        }
+        (out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
+
+    def stop(self) -> None:
+        """Ask for the end of `run` after the present step, also from a signal handler."""
+        self._stopping = True
+
+    def run(self, on_progress: Callable[[DistillProgress], None] | None = None) -> None:
+        """Teach until `minutes` are used up or `stop` is called; saves on the way and at the end."""
+        config = self._config
+        mean_loss, saved, began = 0.0, 0.0, self._clock()
+        validation = self._validate()
+        while not self._stopping and self._seconds < 60.0 * config.minutes:
+            by_jump = self._train_step(next(self._windows))
+            self._step += 1
+            loss = sum(losses.features.item() for losses in by_jump) / len(by_jump)
+            mean_loss = loss if mean_loss == 0.0 else 0.98 * mean_loss + 0.02 * loss
+            self._seconds = self._clock() - began
+            if self._step % 10 == 0:
+                self._append_log(
+                    {"plain": [losses.plain.item() for losses in by_jump], "features": loss}
+                )
+            if self._step % config.validate_steps == 0:
+                validation = self._validate()
+            if self._seconds - saved > 60.0 * config.save_minutes:
+                self.save()
+                saved = self._seconds
+            if on_progress is not None:
+                on_progress(
+                    DistillProgress(self._step, self._seconds / 60.0, mean_loss, validation)
+                )
+        self._validate()
+        self.save()
+
+    def save(self) -> None:
+        """Write the averaged weights."""
+        with self._averaged():
+            few = FewSteps(self.student, self._stand_for)
+            replace(self._teacher, few_steps=few).save_pretrained(self._out / CHECKPOINT_FOLDER)
+
+    def _train_step(self, batch: WindowBatch) -> list[Losses]:
+        config = self._config
+        for group in self._optimizer.param_groups:
+            group["lr"] = learning_rate(
+                config.learning_rate,
+                step=self._step,
+                warmup_steps=config.warmup_steps,
+                done=self._seconds / (60.0 * config.minutes),
+            )
+        whole = torch.rand(()).item() < config.whole
+        count = len(self._jumps) if whole else max(1, len(self._jumps) // 2)
+        noise = centred_noise(batch.features.shape, None)
+        total, by_jump, _ = self._taught(batch, noise, self._jumps[:count])
+        self._optimizer.zero_grad(set_to_none=True)
+        (total / len(by_jump)).backward()
+        torch.nn.utils.clip_grad_norm_(self.student.parameters(), config.gradient_clip)
+        self._optimizer.step()
+        self._ema.step(self.student.parameters())
+        return by_jump
+
+    def _taught(
+        self, batch: WindowBatch, x: Tensor, jumps: Sequence[Jump]
+    ) -> tuple[Tensor, list[Losses], Tensor]:
+        """Return the loss over some jumps from noise `x`, its terms, and where they lead."""
+        config = self._config
+        tokens = self._captions.batch(batch.texts)
+        lengths = torch.full((len(x),), x.shape[1])
+        guided = self._guided(batch.texts)
+        with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
+            conditioning = self.student.condition(tokens.states, tokens.mask)
+        total, by_jump = torch.zeros(()), []
+        for jump in jumps:
+            aim = self._aim(guided, x, jump)
+            steps = torch.full_like(lengths, jump.start)
+            with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
+                output = self.student(x, steps, lengths, conditioning)
+            clean = self._clean(output, x, jump.start)
+            losses = self._loss(clean, aim, lengths, self._step, torch.ones(len(x)))
+            by_jump.append(losses)
+            total = (
+                total
+                + losses.features
+                + config.difference_weight * losses.difference
+                + config.position_weight * losses.position
+                + config.velocity_weight * losses.velocity
+                + config.slide_weight * losses.slide
+            )
+            x = self._levels.moved(x, clean.detach(), jump.start, jump.end)
+        return total, by_jump, x
+
+    @torch.no_grad()
+    def _aim(self, guided: GuidedDenoiser, x: Tensor, jump: Jump) -> Tensor:
+        """Return what the student must predict [B, T, D] to arrive where the teacher does."""
+        lengths, rows = torch.full((len(x),), x.shape[1]), torch.arange(len(x))
+
+        def predicted(x: Tensor, step: int) -> Tensor:
+            clean = self._clean(guided(x, step, lengths, rows), x, step)
+            held = step < self._sampler.planted_below * self._teacher.denoiser.config.train_steps
+            return self._planted(clean) if held else clean
+
+        first = predicted(x, jump.start)
+        at_middle = self._levels.moved(x, first, jump.start, jump.middle)
+        second = predicted(at_middle, jump.middle)
+        second = second + self._levels.lead(jump.start, jump.middle, jump.end) * (second - first)
+        arrived = self._levels.moved(at_middle, second, jump.middle, jump.end)
+        return self._levels.aim(x, arrived, jump.start, jump.end)
+
+    def _clean(self, output: Tensor, x: Tensor, step: int) -> Tensor:
+        signal, _ = self._levels(step)
+        kind = self._teacher.denoiser.config.prediction_type
+        return to_clean(kind, output, x, torch.tensor(signal**2))
+
+    @torch.no_grad()
+    def _guided(self, texts: Sequence[str]) -> GuidedDenoiser:
+        denoiser = self._teacher.denoiser
+        tokens = self._captions.batch([*texts, ""])
+        every = denoiser.condition(tokens.states, tokens.mask)
+        train_steps = denoiser.config.train_steps
+        return GuidedDenoiser(
+            denoiser,
+            every.expand(torch.arange(len(texts))),
+            every.expand(torch.tensor([len(texts)])),
+            [step for jump in self._jumps for step in (jump.start, jump.middle)],
+            lambda step: self._sampler.guidance_at(step / train_steps),
+            bf16=self._bf16,
+        )
+
+    @torch.no_grad()
+    def _validate(self) -> float:
+        """Return how far the averaged student's samples are from the teacher's, squared."""
+        generator = torch.Generator().manual_seed(_VALIDATION_SEED)
+        apart, by_jump = [], []
+        with self._averaged():
+            for batch in self._validation:
+                noise = centred_noise(batch.features.shape, generator)
+                guided, wanted = self._guided(batch.texts), noise
+                for jump in self._jumps:
+                    aim = self._aim(guided, wanted, jump)
+                    wanted = self._levels.moved(wanted, aim, jump.start, jump.end)
+                _, losses, got = self._taught(batch, noise, self._jumps)
+                apart.append((got - wanted).square().mean().item())
+                by_jump.append([each.plain.item() for each in losses])
+        means = torch.tensor(by_jump).mean(0).tolist()
+        validation = sum(apart) / len(apart)
+        self._append_log({"validation": validation, "validation_by_jump": means})
+        return validation
+
+    @contextmanager
+    def _averaged(self) -> Iterator[None]:
+        """Let the student have its averaged weights for a while."""
+        parameters = list(self.student.parameters())
+        self._ema.store(parameters)
+        self._ema.copy_to(parameters)
+        self.student.eval()
+        yield
+        self.student.train()
+        self._ema.restore(parameters)
+
+    def _append_log(self, values: dict[str, Any]) -> None:
+        row = {"step": self._step, "minutes": self._seconds / 60.0, **values}
+        with (self._out / "log.jsonl").open("a", encoding="utf-8") as file:
+            file.write(json.dumps(row) + "\n")

@@ -1,0 +1,90 @@
+"""Weights that need few steps, beside those that taught them."""
+
+import json
+from copy import deepcopy
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from motiondiffuse_ros.diffusion.checkpoint import FEW_STEPS_FILE, Checkpoint
+from motiondiffuse_ros.diffusion.few_steps import FewSteps, FewStepsOf
+from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
+from motiondiffuse_ros.diffusion.sampler_config import STEPS, SamplerConfig
+from motiondiffuse_ros.errors import CheckpointError
+from motiondiffuse_ros.manifest import CONFIG_FILE
+from motiondiffuse_ros.text import load_text_encoder
+
+PLAIN = SamplerConfig(precision="fp32")
+
+
+@pytest.fixture
+def folder(checkpoint, tmp_path):
+    student = deepcopy(checkpoint.denoiser)
+    with torch.no_grad():
+        student.head.out.bias.add_(0.5)
+    encoder = load_text_encoder("minilm")
+    taught = replace(
+        checkpoint,
+        text_encoder_sha256=encoder.sha256,
+        few_steps=FewSteps(student, FewStepsOf(3)),
+    )
+    taught.save_pretrained(tmp_path / "weights")
+    return tmp_path / "weights"
+
+
+@pytest.fixture
+def pipeline(folder):
+    return MotionPipeline.from_pretrained(folder)
+
+
+def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
+    few = Checkpoint.from_pretrained(folder).few_steps
+    assert few.stand_for == FewStepsOf(3)
+    for same in (PLAIN, replace(PLAIN, steps=3), replace(PLAIN, planted_below=0.0)):
+        assert pipeline.completed(same).steps == 3
+        assert pipeline.sha256_of(same) == few.sha256 != pipeline.weights_sha256
+    for other in (
+        replace(PLAIN, guidance_scale=2.0),
+        replace(PLAIN, scheduler="ddpm"),
+        replace(PLAIN, spacing=1.0),
+        replace(PLAIN, guidance_interval=(0.5, 1.0)),
+    ):
+        assert pipeline.completed(other).steps == STEPS
+        assert pipeline.sha256_of(other) == pipeline.weights_sha256
+    assert pipeline.sha256_of(replace(PLAIN, steps=4)) == pipeline.weights_sha256
+
+
+def test_what_they_sample_is_theirs(pipeline):
+    def rotations(config):
+        return pipeline.batch(["a person walks"], [30], config=config, seed=0)[0].rotations
+
+    few = rotations(PLAIN)
+    assert np.array_equal(few, rotations(replace(PLAIN, steps=3)))
+    assert not np.allclose(few, rotations(replace(PLAIN, steps=4)), atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda c: c["files"].pop(FEW_STEPS_FILE), "without a few_steps.safetensors"),
+        (lambda c: c["few_steps"].pop("steps"), "few steps of a checkpoint need"),
+        (lambda c: c["few_steps"].update(wings=2), "few steps of a checkpoint need"),
+        (lambda c: c["few_steps"].update(scheduler="magic"), "schedulers are"),
+        (lambda c: c["few_steps"].update(guidance_interval=3), "guidance_interval"),
+        (lambda c: c["few_steps"].update(steps="many"), "steps"),
+    ],
+)
+def test_spoilt_ones_are_refused_with_the_reason(folder, change, says):
+    config = json.loads((folder / CONFIG_FILE).read_text())
+    change(config)
+    (folder / CONFIG_FILE).write_text(json.dumps(config))
+    with pytest.raises(CheckpointError, match=says):
+        Checkpoint.from_pretrained(folder)
+
+
+def test_an_altered_file_is_refused(folder):
+    (folder / FEW_STEPS_FILE).write_bytes(b"no tensors")
+    with pytest.raises(CheckpointError, match="few_steps.safetensors is truncated or altered"):
+        Checkpoint.from_pretrained(folder)
