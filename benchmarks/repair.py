@@ -83,7 +83,7 @@ def main(arguments: Arguments) -> None:
         items = [items[i] for i in rng.permutation(len(items))[:_QUICK_CLIPS]]
     real = [corpus.representation.decode(item.features, corpus.fps) for item in items]
     rows = {"real": real}
-    default = SamplerConfig(steps=_QUICK_STEPS) if arguments.quick else SamplerConfig()
+    default = pipeline.completed(SamplerConfig(steps=_QUICK_STEPS if arguments.quick else 0))
     for name, planted in (("plain", 0.0), ("planted in the loop", default.planted_below)):
         config = replace(default, planted_below=planted)
         sets = _sampled(pipeline, items, config, arguments)
@@ -121,7 +121,7 @@ def _sampled(
     sets = []
     for candidate in range(arguments.candidates):
         seed = arguments.seed + 1 + candidate
-        name = f"{pipeline.weights_sha256[:12]}_{len(items)}_{seed}_{config.steps}"
+        name = f"{pipeline.sha256_of(config)[:12]}_{len(items)}_{seed}_{config.steps}"
         path = (arguments.cache or Path()) / f"{name}_{config.planted_below}.npz"
         if arguments.cache is not None and path.exists():
             sets.append(_load(path))

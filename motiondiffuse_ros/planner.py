@@ -427,8 +427,7 @@ class Planner:
         match: TextMatch | None,
         watch: _Stages,
     ) -> tuple[dict[int, Motion], str]:
-        """Return the motions of the candidates that were sampled to the end, and by which weights.
-        """
+        """Return the motions of the candidates that went on, and the hash of the weights."""
         assert request.guidance_scale is not None
         assert request.steps is not None
         assert request.candidates is not None

@@ -6,6 +6,7 @@ physics. So only candidates that match the texts about as well as the best one a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -65,14 +66,14 @@ class TextMatch:
 
 
 def eligible(matches: Mapping[int, float | None]) -> list[int]:
-    """Return the candidates that match well enough to be chosen.
+    """Return the candidates that match well enough to be chosen, the best first.
 
     Args:
         matches: Of `TextMatch`, by candidate.
     """
-    known = [match for match in matches.values() if match is not None]
-    least = max(known) - MATCH_MARGIN if known else None
-    return [i for i, m in matches.items() if least is None or m is None or m >= least]
+    least = max((m for m in matches.values() if m is not None), default=0.0) - MATCH_MARGIN
+    lead = {i: math.inf if m is None else m for i, m in matches.items()}
+    return sorted((i for i in lead if lead[i] >= least), key=lambda i: -lead[i])
 
 
 def leading(matches: Sequence[float | None], count: int) -> list[int]:

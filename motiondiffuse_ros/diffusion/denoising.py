@@ -12,7 +12,6 @@ from motiondiffuse_ros.diffusion.constraints import Constraint, apply
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.process import (
-    denoising_steps,
     from_clean,
     keep_rows,
     make_scheduler,
@@ -82,8 +81,7 @@ class Denoising:
         self._imagination = imagination
         self._stepped, self._cancelled = stepped, cancelled
         self._scheduler = make_scheduler(config.scheduler, denoiser.config)
-        times = denoising_steps(config.steps, config.spacing, self._train_steps)
-        self._scheduler.set_timesteps(timesteps=times)
+        self._scheduler.set_timesteps(timesteps=config.times(self._train_steps))
         self._steps = [int(step) for step in self._scheduler.timesteps]
         self._x = noise.to(denoiser.device)
         self._output: Tensor | None = None

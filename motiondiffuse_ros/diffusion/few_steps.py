@@ -15,18 +15,23 @@ class FewStepsOf:
     """What few steps were taught to do; as in `SamplerConfig`, whose other fields stay open.
 
     Attributes:
-        steps: Steps that are needed.
+        at: The diffusion steps that are needed, falling.
         scheduler: Of the teacher.
         spacing: Of both.
         guidance_scale: Of the teacher; part of what was learnt.
         guidance_interval: Where it was used.
     """
 
-    steps: int
+    at: tuple[int, ...]
     scheduler: str = SamplerConfig.scheduler
     spacing: float = SamplerConfig.spacing
     guidance_scale: float = SamplerConfig.guidance_scale
     guidance_interval: tuple[float, float] = SamplerConfig.guidance_interval
+
+    @property
+    def steps(self) -> int:
+        """How many steps are needed."""
+        return len(self.at)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as JSON types."""
@@ -43,7 +48,8 @@ class FewStepsOf:
         if not isinstance(data, dict) or set(data) != names:
             raise CheckpointError(f"few steps of a checkpoint need {sorted(names)}, got {data!r}")
         try:
-            found = cls(**{**data, "guidance_interval": tuple(data["guidance_interval"])})
+            pair = tuple(data["guidance_interval"])
+            found = cls(**{**data, "at": tuple(data["at"]), "guidance_interval": pair})
             SamplerConfig(**found.to_dict()).validate()
         except (InputError, TypeError, ValueError) as error:
             raise CheckpointError(f"few steps of a checkpoint, {data!r}: {error}") from error
@@ -66,9 +72,10 @@ class FewSteps:
 
     def fit(self, config: SamplerConfig) -> bool:
         """Return whether a sampler asks for what they do, in any number of steps."""
-        wanted = self.stand_for
-        return replace(config, **wanted.to_dict()) == replace(config, steps=wanted.steps)
+        taught = self.stand_for.to_dict() | {"at": ()}
+        return replace(config, **taught) == config
 
     def sampler(self, config: SamplerConfig) -> SamplerConfig:
         """Return how to sample with them: one pass a step, each of first order."""
-        return replace(config, scheduler="ddim", guidance_scale=1.0)
+        at = self.stand_for.at
+        return replace(config, scheduler="ddim", at=at, guidance_scale=1.0)

@@ -15,7 +15,7 @@ from motiondiffuse_ros.diffusion.denoising import Denoising, Planting
 from motiondiffuse_ros.diffusion.guidance import GuidedDenoiser
 from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.precision import use_bf16
-from motiondiffuse_ros.diffusion.process import denoising_steps, make_scheduler
+from motiondiffuse_ros.diffusion.process import make_scheduler
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.diffusion.windowed_prediction import BATCH_ROWS, WindowedPrediction
 
@@ -223,7 +223,7 @@ def _guided(
         denoiser,
         conditioning,
         unconditional,
-        denoising_steps(config.steps, config.spacing, train_steps),
+        config.times(train_steps),
         lambda step: config.guidance_at(step / train_steps),
         bf16=use_bf16(config.precision, denoiser.device),
     )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from motiondiffuse_ros.diffusion.precision import check_precision
-from motiondiffuse_ros.diffusion.process import SCHEDULERS
+from motiondiffuse_ros.diffusion.process import SCHEDULERS, denoising_steps
 from motiondiffuse_ros.errors import RequestError
 
 STEPS = 8
@@ -28,6 +29,7 @@ class SamplerConfig:
         scheduler: One of `SCHEDULERS`.
         steps: Denoising steps; 0 is as few as the weights need.
         spacing: How much denser they are where there is more noise; see `denoising_steps`.
+        at: The diffusion steps themselves, falling, instead of `steps` and `spacing`.
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
         guidance_interval: Noise levels, as part of the training steps, between which guidance is
             used (Kynkäänniemi et al. 2024); the conditional model alone does the rest.
@@ -46,6 +48,7 @@ class SamplerConfig:
     scheduler: str = "dpm-solver++"
     steps: int = 0
     spacing: float = 2.5
+    at: tuple[int, ...] = ()
     guidance_scale: float = 4.0
     guidance_interval: tuple[float, float] = (0.8, 1.0)
     part_correction: float = 0.0
@@ -66,6 +69,8 @@ class SamplerConfig:
             raise RequestError(f"steps must be from 0 to 1000, got {self.steps}")
         if not 1.0 <= self.spacing <= 5.0:
             raise RequestError(f"spacing must be from 1 to 5, got {self.spacing}")
+        if any(a <= b for a, b in pairwise((*self.at, -1))):
+            raise RequestError(f"at must be falling diffusion steps, got {self.at}")
         for name in _FRACTIONS:
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise RequestError(f"{name} must be from 0 to 1, got {getattr(self, name)}")
@@ -74,6 +79,14 @@ class SamplerConfig:
             raise RequestError(
                 f"guidance_interval must be two rising numbers from 0 to 1, got {low}, {high}"
             )
+
+    def times(self, train_steps: int) -> list[int]:
+        """Return the diffusion steps, from the noisiest on.
+
+        Args:
+            train_steps: Of the denoiser.
+        """
+        return list(self.at) or denoising_steps(self.steps, self.spacing, train_steps)
 
     def completed(self, steps: int = STEPS) -> SamplerConfig:
         """Return the sampler with this number of steps, if it sets none."""

@@ -8,9 +8,6 @@ from typing import Any
 from motiondiffuse_ros.diffusion.precision import check_precision
 from motiondiffuse_ros.errors import InputError
 
-MOST_STEPS = 8
-"""More would lie too close together where there is most noise."""
-
 
 @dataclass(frozen=True)
 class DistillConfig:
@@ -18,14 +15,17 @@ class DistillConfig:
 
     Attributes:
         minutes: Time in all; the learning rate follows it.
-        steps: Denoising steps of the student. Each stands for two of the teacher's.
+        teacher_steps: Denoising steps of the teacher.
+        pairs: How many of the student's steps stand for two of the teacher's, from the noisiest
+            on; the others stand for one. Details are made of the last ones, which are also the
+            cheapest: guidance is not used there.
         batch_size: Motions at once; each gives `steps` pairs to learn from.
         learning_rate: Peak of the cosine schedule.
         warmup_steps: Steps of linear warm-up.
         weight_decay: Of AdamW, on matrices.
         gradient_clip: Largest gradient norm.
         whole: Share of batches that go all the way to clean motions; the others are taught half of
-            the steps, the noisiest. The rest is learnt much sooner: guidance is not used there.
+            the steps, the noisiest, which take longest to learn.
         statements: Share of texts that state kinematics; see `TrainConfig`.
         deeds: Share of texts drawn by what is done; see `TrainConfig`.
         difference_weight: Weight of the loss on frame-to-frame differences.
@@ -40,13 +40,14 @@ class DistillConfig:
     """
 
     minutes: float = 60.0
-    steps: int = 4
+    teacher_steps: int = 8
+    pairs: int = 3
     batch_size: int = 16
     learning_rate: float = 3e-4
     warmup_steps: int = 50
     weight_decay: float = 0.0
     gradient_clip: float = 1.0
-    whole: float = 0.25
+    whole: float = 0.4
     statements: float = 0.3
     deeds: float = 0.2
     difference_weight: float = 3.0
@@ -62,12 +63,15 @@ class DistillConfig:
     def validate(self) -> None:
         """Raise InputError if a value is out of range."""
         check_precision(self.precision)
-        positive = ("minutes", "steps", "batch_size", "learning_rate", "save_minutes")
+        positive = ("minutes", "teacher_steps", "batch_size", "learning_rate", "save_minutes")
         for name in (*positive, "validate_steps"):
             if not getattr(self, name) > 0:
                 raise InputError(f"distilling {name} must be positive, got {getattr(self, name)}")
-        if self.steps > MOST_STEPS:
-            raise InputError(f"distilling steps must be at most {MOST_STEPS}, got {self.steps}")
+        if not 0 <= 2 * self.pairs <= self.teacher_steps:
+            raise InputError(
+                f"distilling pairs must be from 0 to half of the {self.teacher_steps} steps of the "
+                f"teacher, got {self.pairs}"
+            )
         for name in ("whole", "statements", "deeds", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(

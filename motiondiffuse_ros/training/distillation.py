@@ -1,4 +1,4 @@
-"""Distillation: a student learns to go in one step where its teacher goes in two, guided ones."""
+"""Distillation: a student learns to go in one step where its teacher goes in two guided ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from motiondiffuse_ros.diffusion.constraints import OnPlainFeatures
 from motiondiffuse_ros.diffusion.few_steps import FewSteps, FewStepsOf
 from motiondiffuse_ros.diffusion.guidance import GuidedDenoiser
 from motiondiffuse_ros.diffusion.precision import use_bf16
-from motiondiffuse_ros.diffusion.process import denoising_steps, make_scheduler, to_clean
+from motiondiffuse_ros.diffusion.process import make_scheduler, to_clean
 from motiondiffuse_ros.diffusion.sampler import centred_noise
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.motion.planted_feet import WHILE_DENOISING, PlantedFeet
@@ -40,29 +40,31 @@ _VALIDATION_SEED = 1234
 
 @dataclass(frozen=True)
 class Jump:
-    """What the student does in one step and its teacher in two.
+    """What the student does in one step.
 
     Attributes:
-        start: Diffusion step from which both go.
-        middle: The teacher's second.
+        start: Diffusion step from which student and teacher go.
+        middle: The teacher's second; None if it takes one step, too.
         end: Where both arrive; None is the clean motion.
     """
 
     start: int
-    middle: int
+    middle: int | None
     end: int | None
 
 
-def jumps(steps: int, spacing: float, train_steps: int) -> list[Jump]:
-    """Return the jumps of a student of so many steps; see `denoising_steps`."""
-    times: list[int | None] = [*denoising_steps(2 * steps, spacing, train_steps), None]
-    found = []
-    for i in range(0, 2 * steps, 2):
-        start, middle = times[i], times[i + 1]
-        assert start is not None
-        assert middle is not None
-        found.append(Jump(start, middle, times[i + 2]))
-    return found
+def jumps(times: Sequence[int], pairs: int) -> list[Jump]:
+    """Return the student's steps.
+
+    Args:
+        times: The teacher's diffusion steps, falling.
+        pairs: How many of the student's steps, from the first on, stand for two of them.
+    """
+    starts = [*range(0, 2 * pairs, 2), *range(2 * pairs, len(times))]
+    ends = [*(times[i] for i in starts[1:]), None]
+    middles = [times[i + 1] if i < 2 * pairs else None for i in starts]
+    rows = zip(starts, middles, ends, strict=True)
+    return [Jump(times[i], middle, end) for i, middle, end in rows]
 
 
 class Levels:
@@ -163,12 +165,12 @@ class Distiller:
             clock: Of the run's time [s].
         """
         config.validate()
-        self._sampler, self._stand_for = SamplerConfig(), FewStepsOf(config.steps)
+        self._sampler = SamplerConfig(steps=config.teacher_steps)
         self._corpus, self._config, self._out, self._clock = corpus, config, out, clock
         self._teacher, self._stopping = teacher, False
         start = teacher if student is None else student
         shape = teacher.denoiser.config
-        self._jumps = jumps(config.steps, self._sampler.spacing, shape.train_steps)
+        self._jumps = jumps(self._sampler.times(shape.train_steps), config.pairs)
         self._levels = Levels(make_scheduler("ddpm", shape).alphas_cumprod)
         self.student = deepcopy(start.denoiser).train()
         self._optimizer = torch.optim.AdamW(
@@ -182,9 +184,7 @@ class Distiller:
         )
         self._bf16 = use_bf16(config.precision)
         self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
-        self._planted = OnPlainFeatures(
-            PlantedFeet(corpus.fps, WHILE_DENOISING), corpus.statistics
-        )
+        self._planted = OnPlainFeatures(PlantedFeet(corpus.fps, WHILE_DENOISING), corpus.statistics)
         self._step, self._seconds = 0, 0.0
         train, val = corpus.split("train"), corpus.split("val")
         windows = WindowSampler(
@@ -221,7 +221,7 @@ class Distiller:
         self._stopping = True
 
     def run(self, on_progress: Callable[[DistillProgress], None] | None = None) -> None:
-        """Teach until `minutes` are used up or `stop` is called; saves on the way and at the end."""
+        """Teach until `minutes` are used up or `stop` is called, saving on the way and then."""
         config = self._config
         mean_loss, saved, began = 0.0, 0.0, self._clock()
         validation = self._validate()
@@ -250,7 +250,7 @@ class Distiller:
     def save(self) -> None:
         """Write the averaged weights."""
         with self._averaged():
-            few = FewSteps(self.student, self._stand_for)
+            few = FewSteps(self.student, FewStepsOf(tuple(jump.start for jump in self._jumps)))
             replace(self._teacher, few_steps=few).save_pretrained(self._out / CHECKPOINT_FOLDER)
 
     def _train_step(self, batch: WindowBatch) -> list[Losses]:
@@ -314,6 +314,8 @@ class Distiller:
             return self._planted(clean) if held else clean
 
         first = predicted(x, jump.start)
+        if jump.middle is None:
+            return first
         at_middle = self._levels.moved(x, first, jump.start, jump.middle)
         second = predicted(at_middle, jump.middle)
         second = second + self._levels.lead(jump.start, jump.middle, jump.end) * (second - first)
@@ -335,7 +337,7 @@ class Distiller:
             denoiser,
             every.expand(torch.arange(len(texts))),
             every.expand(torch.tensor([len(texts)])),
-            [step for jump in self._jumps for step in (jump.start, jump.middle)],
+            self._sampler.times(train_steps),
             lambda step: self._sampler.guidance_at(step / train_steps),
             bf16=self._bf16,
         )

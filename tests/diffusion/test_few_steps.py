@@ -16,6 +16,7 @@ from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.manifest import CONFIG_FILE
 from motiondiffuse_ros.text import load_text_encoder
 
+AT = (999, 900, 300)
 PLAIN = SamplerConfig(precision="fp32")
 
 
@@ -28,7 +29,7 @@ def folder(checkpoint, tmp_path):
     taught = replace(
         checkpoint,
         text_encoder_sha256=encoder.sha256,
-        few_steps=FewSteps(student, FewStepsOf(3)),
+        few_steps=FewSteps(student, FewStepsOf(AT)),
     )
     taught.save_pretrained(tmp_path / "weights")
     return tmp_path / "weights"
@@ -41,7 +42,7 @@ def pipeline(folder):
 
 def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
     few = Checkpoint.from_pretrained(folder).few_steps
-    assert few.stand_for == FewStepsOf(3)
+    assert few.stand_for == FewStepsOf(AT)
     for same in (PLAIN, replace(PLAIN, steps=3), replace(PLAIN, planted_below=0.0)):
         assert pipeline.completed(same).steps == 3
         assert pipeline.sha256_of(same) == few.sha256 != pipeline.weights_sha256
@@ -69,11 +70,12 @@ def test_what_they_sample_is_theirs(pipeline):
     ("change", "says"),
     [
         (lambda c: c["files"].pop(FEW_STEPS_FILE), "without a few_steps.safetensors"),
-        (lambda c: c["few_steps"].pop("steps"), "few steps of a checkpoint need"),
+        (lambda c: c["few_steps"].pop("at"), "few steps of a checkpoint need"),
         (lambda c: c["few_steps"].update(wings=2), "few steps of a checkpoint need"),
         (lambda c: c["few_steps"].update(scheduler="magic"), "schedulers are"),
         (lambda c: c["few_steps"].update(guidance_interval=3), "guidance_interval"),
-        (lambda c: c["few_steps"].update(steps="many"), "steps"),
+        (lambda c: c["few_steps"].update(at=[999, 300, 900]), "falling"),
+        (lambda c: c["few_steps"].update(at=["many"]), "few steps of a checkpoint"),
     ],
 )
 def test_spoilt_ones_are_refused_with_the_reason(folder, change, says):
@@ -86,5 +88,5 @@ def test_spoilt_ones_are_refused_with_the_reason(folder, change, says):
 
 def test_an_altered_file_is_refused(folder):
     (folder / FEW_STEPS_FILE).write_bytes(b"no tensors")
-    with pytest.raises(CheckpointError, match="few_steps.safetensors is truncated or altered"):
+    with pytest.raises(CheckpointError, match="is truncated or altered"):
         Checkpoint.from_pretrained(folder)

@@ -20,7 +20,7 @@ from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.process import denoising_steps, make_scheduler
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import InputError
-from motiondiffuse_ros.training.distill_config import MOST_STEPS, DistillConfig
+from motiondiffuse_ros.training.distill_config import DistillConfig
 from motiondiffuse_ros.training.distillation import Distiller, Levels, jumps
 
 LEVELS = Levels(make_scheduler("ddpm", SMALL).alphas_cumprod)
@@ -65,13 +65,16 @@ def teacher(encoder):
     return corpus, Checkpoint(denoiser, corpus.statistics, encoder.sha256, "teacher")
 
 
-@given(st.integers(1, MOST_STEPS), st.floats(1.0, 2.5))
-def test_jumps_follow_each_other_from_the_noisiest_step_to_the_clean_motion(steps, spacing):
-    found = jumps(steps, spacing, 1000)
-    assert [jump.start for jump in found] == denoising_steps(steps, spacing, 1000)
+@given(st.integers(1, 30), st.floats(1.0, 3.0), st.data())
+def test_steps_of_the_student_follow_each_other_and_pass_all_of_the_teachers(count, spacing, data):
+    times = denoising_steps(count, spacing, 1000)
+    pairs = data.draw(st.integers(0, count // 2))
+    found = jumps(times, pairs)
+    assert len(found) == count - pairs
     assert [jump.end for jump in found] == [*(jump.start for jump in found[1:]), None]
-    for jump in found:
-        assert jump.start > jump.middle > (-1 if jump.end is None else jump.end)
+    passed = [t for jump in found for t in (jump.start, jump.middle) if t is not None]
+    assert passed == times
+    assert [jump.middle is not None for jump in found] == [i < pairs for i in range(len(found))]
 
 
 @given(st.integers(1, 999), st.integers(0, 998), st.booleans())
@@ -79,9 +82,7 @@ def test_a_step_towards_the_aim_arrives(start, end, clean):
     end = None if clean or end >= start else end
     x, arrived = torch.randn(2, 1, 3, 4, generator=torch.Generator().manual_seed(start))
     aim = LEVELS.aim(x, arrived, start, end)
-    torch.testing.assert_close(
-        LEVELS.moved(x, aim, start, end), arrived, atol=1e-3, rtol=1e-3
-    )
+    torch.testing.assert_close(LEVELS.moved(x, aim, start, end), arrived, atol=1e-3, rtol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +110,7 @@ def test_a_run_brings_the_student_nearer_and_leaves_weights_that_need_few_steps(
     Distiller(corpus, encoder, checkpoint, CONFIG, tmp_path).run(seen.append)
     rows = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     apart = [row["validation_by_jump"] for row in rows if "validation" in row]
-    assert apart[-1][0] < 0.7 * apart[0][0]  # where guidance is to be learnt
+    assert apart[-1][0] < 0.8 * apart[0][0]  # where guidance is to be learnt
     assert seen[-1].step > 1
     assert all(math.isfinite(progress.loss) for progress in seen)
 
@@ -117,12 +118,12 @@ def test_a_run_brings_the_student_nearer_and_leaves_weights_that_need_few_steps(
     for name, tensor in checkpoint.denoiser.half().float().state_dict().items():
         assert tensor.equal(left.denoiser.state_dict()[name]), name
     pipeline = MotionPipeline(left, encoder)
-    assert pipeline.completed(SamplerConfig()).steps == CONFIG.steps
+    assert pipeline.completed(SamplerConfig()).steps == CONFIG.teacher_steps - CONFIG.pairs
     assert pipeline.sha256_of(SamplerConfig()) == left.few_steps.sha256
 
 
 def test_settings_out_of_range_are_refused():
-    for wrong in ({"steps": 0}, {"steps": 9}, {"minutes": -1.0}, {"whole": 1.5}, {"precision": "int3"}):
+    for wrong in ({"pairs": 5}, {"minutes": -1.0}, {"whole": 1.5}, {"precision": "int3"}):
         with pytest.raises(Exception, match=next(iter(wrong))) as refused:
             DistillConfig(**wrong).validate()
         assert isinstance(refused.value, InputError)

@@ -72,20 +72,18 @@ def repair_best(
     candidates: Mapping[int, Motion],
     judge: Callable[[Motion], Report] | None = None,
 ) -> tuple[int, Repair]:
-    """Repair candidates one after the other, the most plausible first, until one is plausible.
+    """Repair candidates one after the other, in their order, until one is plausible.
 
     Args:
-        candidates: At least one.
+        candidates: At least one; those that are preferred come first.
         judge: As for `repair`.
 
     Returns:
         The plausible one, or the one with the best score after repair, by its key; and its repair.
     """
-    judge = judge or _assessed
-    before = {i: judge(motion) for i, motion in candidates.items()}
     repaired: dict[int, Repair] = {}
-    for i in sorted(before, key=lambda i: -before[i].score):
-        repaired[i] = repair(candidates[i], judge, before[i])
+    for i, motion in candidates.items():
+        repaired[i] = repair(motion, judge)
         if repaired[i].after.verdict == PLAUSIBLE:
             return i, repaired[i]
     best = max(repaired, key=lambda i: repaired[i].after.score)

@@ -34,13 +34,13 @@ def test_where_none_becomes_plausible_the_best_score_wins():
     assert scores[best] == max(scores)
 
 
-def test_a_plausible_one_is_judged_twice_and_the_others_once():
+def test_the_first_plausible_one_is_taken_and_those_after_it_are_not_judged():
     judged: list[Motion] = []
 
     def judge(motion: Motion):
         judged.append(motion)
         return assess(motion, track=False)
 
-    best, repaired = repair_best({0: shaking(), 1: waving(60), 2: shaking()}, judge)
-    assert (best, len(judged)) == (1, 4)
+    best, repaired = repair_best({4: waving(60), 1: waving(80), 2: shaking()}, judge)
+    assert (best, len(judged)) == (4, 2)
     assert repaired.before.verdict == repaired.after.verdict == PLAUSIBLE
