@@ -121,7 +121,7 @@ def _sampled(
     sets = []
     for candidate in range(arguments.candidates):
         seed = arguments.seed + 1 + candidate
-        name = f"{pipeline.sha256_of(config)[:12]}_{len(items)}_{seed}_{config.steps}"
+        name = f"{pipeline.weights_sha256[:12]}_{len(items)}_{seed}_{config.steps}"
         path = (arguments.cache or Path()) / f"{name}_{config.planted_below}.npz"
         if arguments.cache is not None and path.exists():
             sets.append(_load(path))

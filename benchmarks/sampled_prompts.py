@@ -47,5 +47,9 @@ def sample_prompts(
         plans[text].append(planner.plan(MotionRequest.from_text(text, SECONDS, seed=seed)))
     del settings["weights"]
     plan = next(iter(plans.values()))[0]
-    used = {"weights_sha256": plan.weights_sha256, "steps": plan.request.steps}
+    used = {
+        "weights_sha256": plan.weights_sha256,
+        "few_steps_sha256": plan.few_steps_sha256,
+        "steps": plan.request.steps,
+    }
     return plans, {"seeds": seeds, **settings, **used}

@@ -70,7 +70,8 @@ def main() -> None:
     print(f"mean over kinds {mean:.1%}")
     if options.json is not None:
         result = {
-            "weights_sha256": pipeline.sha256_of(config),
+            "weights_sha256": pipeline.weights_sha256,
+            "few_steps_sha256": pipeline.few_steps_sha256(config),
             "samples": options.samples,
             "mean": mean,
             "shares": shares,

@@ -193,7 +193,8 @@ class Plan:
     Attributes:
         request: With all defaults filled in.
         seed: Of all randomness; with the same weights and settings it gives the same motion.
-        weights_sha256: Hash of the weights file that was sampled with.
+        weights_sha256: Hash of the weights file.
+        few_steps_sha256: Hash of the weights that did the first steps; empty if those did.
         robot: Name of the robot, or its description file.
         motion: The chosen candidate, its stance put on the floor.
         trajectory: For the robot's controller.
@@ -209,6 +210,7 @@ class Plan:
     request: MotionRequest
     seed: int
     weights_sha256: str
+    few_steps_sha256: str
     robot: str
     motion: Motion = field(repr=False)
     trajectory: JointTrajectory = field(repr=False)
@@ -225,6 +227,7 @@ class Plan:
             "request": self.request.to_dict(),
             "seed": self.seed,
             "weights_sha256": self.weights_sha256,
+            "few_steps_sha256": self.few_steps_sha256,
             "robot": self.robot,
             "joint_names": list(self.trajectory.joint_names),
             "fps": self.motion.fps,
@@ -385,7 +388,7 @@ class Planner:
         texts, frames = timeline(request, self._pipeline.fps)
         critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
         match = None if critic is None else TextMatch(critic, texts)
-        candidates, sha256 = self._sample(request, start, texts, frames, match, watch)
+        candidates = self._sample(request, start, texts, frames, match, watch)
         given = start.lead_in is not None or request.edit is not None or request.waypoints
         repairs = config.repair and not given
         best = self._choose(candidates, match, request, robot, watch, repairs, track)
@@ -406,7 +409,8 @@ class Planner:
         return Plan(
             request=request,
             seed=request.seed,
-            weights_sha256=sha256,
+            weights_sha256=self.weights_sha256,
+            few_steps_sha256=self._pipeline.few_steps_sha256(self._sampler(request)),
             robot=robot.name,
             motion=best.motion,
             trajectory=trajectory,
@@ -418,6 +422,12 @@ class Planner:
             origin=origin,
         )
 
+    def _sampler(self, request: MotionRequest) -> SamplerConfig:
+        """Return the sampler of a completed request."""
+        assert request.guidance_scale is not None
+        assert request.steps is not None
+        return self.config.sampler(request.steps, request.guidance_scale)
+
     def _sample(
         self,
         request: MotionRequest,
@@ -426,10 +436,8 @@ class Planner:
         frames: int,
         match: TextMatch | None,
         watch: _Stages,
-    ) -> tuple[dict[int, Motion], str]:
-        """Return the motions of the candidates that went on, and the hash of the weights."""
-        assert request.guidance_scale is not None
-        assert request.steps is not None
+    ) -> dict[int, Motion]:
+        """Return the motions of the candidates that were sampled to the end."""
         assert request.candidates is not None
         assert request.seed is not None
         pipeline = self._pipeline
@@ -452,7 +460,7 @@ class Planner:
         samples = pipeline(
             tuple(_later(text, before) for text in texts),
             before + frames,
-            config=self.config.sampler(request.steps, request.guidance_scale),
+            config=self._sampler(request),
             candidates=request.candidates,
             seed=request.seed,
             blend_frames=round(LIMITS.blend * pipeline.fps),
@@ -464,7 +472,7 @@ class Planner:
         watch.record("text", samples.text_seconds)
         watch.record("sampling", samples.sampling_seconds)
         finished = (self._finished(m, start, before, edited) for m in samples.motions)
-        return dict(zip(samples.candidates, finished, strict=True)), samples.weights_sha256
+        return dict(zip(samples.candidates, finished, strict=True))
 
     def _given(
         self, request: MotionRequest, start: Start, frames: int

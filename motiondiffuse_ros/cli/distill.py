@@ -17,7 +17,7 @@ from motiondiffuse_ros.training.distill_config import DistillConfig
 class Distill:
     """Teach a student to do in one step what its teacher does in two, guidance included.
 
-    Leaves in the output folder: checkpoint/, config.json and log.jsonl.
+    Leaves in the output folder: checkpoint/ (to generate with) and log.jsonl.
     """
 
     corpus: Path = Path("corpus")
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str]) -> int:
             bar.update(
                 task,
                 completed=p.minutes,
-                description=f"step {p.step}, loss {p.loss:.4f}, samples {p.validation:.4f} apart",
+                description=f"step {p.step}, loss {p.loss:.4f}, validation {p.validation:.4f}",
             )
 
         # the shell lets background jobs ignore SIGINT; both stop the run after its step

@@ -1,4 +1,4 @@
-"""Weights that need few steps, and the sampler that their steps stand for."""
+"""Weights that take the first, guided steps two at a time, and the sampler they stand for."""
 
 from __future__ import annotations
 
@@ -9,20 +9,24 @@ from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import CheckpointError, InputError
 
+_FACTS = ("scheduler", "spacing", "guidance_scale", "guidance_interval")
+
 
 @dataclass(frozen=True)
 class FewStepsOf:
     """What few steps were taught to do; as in `SamplerConfig`, whose other fields stay open.
 
     Attributes:
-        at: The diffusion steps that are needed, falling.
+        taught: Diffusion steps of the student, falling. Each needs one pass, without guidance.
+        then: Those at which the base weights go on, without guidance, falling.
         scheduler: Of the teacher.
-        spacing: Of both.
+        spacing: Of the teacher.
         guidance_scale: Of the teacher; part of what was learnt.
         guidance_interval: Where it was used.
     """
 
-    at: tuple[int, ...]
+    taught: tuple[int, ...]
+    then: tuple[int, ...]
     scheduler: str = SamplerConfig.scheduler
     spacing: float = SamplerConfig.spacing
     guidance_scale: float = SamplerConfig.guidance_scale
@@ -30,8 +34,24 @@ class FewStepsOf:
 
     @property
     def steps(self) -> int:
-        """How many steps are needed."""
-        return len(self.at)
+        """How many steps there are."""
+        return len(self.taught) + len(self.then)
+
+    def validate(self) -> None:
+        """Raise InputError if a value is out of range."""
+        if not self.taught or not self.then:
+            raise InputError("few steps need some that were taught and some of the base weights")
+        facts = {name: getattr(self, name) for name in _FACTS}
+        self.sampler(SamplerConfig(**facts)).validate()
+
+    def fit(self, config: SamplerConfig) -> bool:
+        """Return whether a sampler asks for what they do, in any number of steps."""
+        alike = all(getattr(self, name) == getattr(config, name) for name in _FACTS)
+        return alike and not config.at
+
+    def sampler(self, config: SamplerConfig) -> SamplerConfig:
+        """Return how to sample in these steps."""
+        return replace(config, at=(*self.taught, *self.then), guidance_scale=1.0)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as JSON types."""
@@ -47,10 +67,10 @@ class FewStepsOf:
         names = {f.name for f in fields(cls)}
         if not isinstance(data, dict) or set(data) != names:
             raise CheckpointError(f"few steps of a checkpoint need {sorted(names)}, got {data!r}")
+        tuples = ("taught", "then", "guidance_interval")
         try:
-            pair = tuple(data["guidance_interval"])
-            found = cls(**{**data, "at": tuple(data["at"]), "guidance_interval": pair})
-            SamplerConfig(**found.to_dict()).validate()
+            found = cls(**{**data, **{name: tuple(data[name]) for name in tuples}})
+            found.validate()
         except (InputError, TypeError, ValueError) as error:
             raise CheckpointError(f"few steps of a checkpoint, {data!r}: {error}") from error
         return found
@@ -69,13 +89,3 @@ class FewSteps:
     denoiser: Denoiser = field(repr=False)
     stand_for: FewStepsOf
     sha256: str = ""
-
-    def fit(self, config: SamplerConfig) -> bool:
-        """Return whether a sampler asks for what they do, in any number of steps."""
-        taught = self.stand_for.to_dict() | {"at": ()}
-        return replace(config, **taught) == config
-
-    def sampler(self, config: SamplerConfig) -> SamplerConfig:
-        """Return how to sample with them: one pass a step, each of first order."""
-        at = self.stand_for.at
-        return replace(config, scheduler="ddim", at=at, guidance_scale=1.0)

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -22,7 +21,8 @@ from motiondiffuse_ros.diffusion.constraints import (
 )
 from motiondiffuse_ros.diffusion.denoiser import Conditioning, Denoiser
 from motiondiffuse_ros.diffusion.denoising import Planting
-from motiondiffuse_ros.diffusion.sampler import sample, sample_batch
+from motiondiffuse_ros.diffusion.few_steps import FewSteps
+from motiondiffuse_ros.diffusion.sampler import Early, sample, sample_batch
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import CheckpointError, RequestError, TextEncoderError
 from motiondiffuse_ros.motion import Motion
@@ -45,24 +45,14 @@ class Samples:
     Attributes:
         motions: One per candidate that went on; starts over the origin, facing +x.
         candidates: Which those are, rising.
-        weights_sha256: Hash of the weights file that was used.
         text_seconds: Time spent on the text encoder, s.
         sampling_seconds: Time spent on denoising, s.
     """
 
     motions: tuple[Motion, ...]
     candidates: tuple[int, ...]
-    weights_sha256: str
     text_seconds: float
     sampling_seconds: float
-
-
-class _Weights(NamedTuple):
-    """What answers to a sampler, and how it is sampled itself."""
-
-    denoiser: Denoiser
-    config: SamplerConfig
-    sha256: str
 
 
 class MotionPipeline:
@@ -144,19 +134,21 @@ class MotionPipeline:
     def completed(self, config: SamplerConfig) -> SamplerConfig:
         """Return a sampler with as few steps as the weights need, if it sets none."""
         few = self._checkpoint.few_steps
-        if few is None or not few.fit(config):
+        if few is None or not few.stand_for.fit(config):
             return config.completed()
         return config.completed(few.stand_for.steps)
 
-    def sha256_of(self, config: SamplerConfig) -> str:
-        """Return the hash of the weights file that answers to a sampler."""
-        return self._weights_for(config).sha256
+    def _few_steps_for(self, config: SamplerConfig) -> FewSteps | None:
+        """Return the weights for few steps, if a completed sampler asks for as many."""
+        few = self._checkpoint.few_steps
+        if few is None or not few.stand_for.fit(config) or config.steps != few.stand_for.steps:
+            return None
+        return few
 
-    def _weights_for(self, config: SamplerConfig) -> _Weights:
-        config, few = self.completed(config), self._checkpoint.few_steps
-        if few is not None and few.fit(config) and config.steps == few.stand_for.steps:
-            return _Weights(few.denoiser, few.sampler(config), few.sha256)
-        return _Weights(self._checkpoint.denoiser, config, self._checkpoint.sha256)
+    def few_steps_sha256(self, config: SamplerConfig) -> str:
+        """Return the hash of the weights that do the first steps of a sampler; empty if none do."""
+        few = self._few_steps_for(self.completed(config))
+        return "" if few is None else few.sha256
 
     def on_path(self, points: Sequence[PathPoint], frames: int) -> Constraint:
         """Return the constraint that the root passes points; see `RootPath`.
@@ -220,7 +212,7 @@ class MotionPipeline:
             assert choose is not None
             return choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
 
-        denoiser, config, sha256 = self._weights_for(config)
+        denoiser, config = self._checkpoint.denoiser, self.completed(config)
         windows = compose(
             texts,
             frames,
@@ -230,14 +222,12 @@ class MotionPipeline:
         )
         began = time.perf_counter()
         distinct = list(dict.fromkeys(w.text for w in windows))
-        every = self._condition(denoiser, [*distinct, ""])
+        given = self._given([*distinct, ""], config)
         encoded = time.perf_counter()
         sampled = sample(
             denoiser,
             windows,
-            every.expand(torch.arange(len(distinct))),
-            every.expand(torch.tensor([len(distinct)])),
-            config,
+            *given,
             frames=frames,
             candidates=candidates,
             seed=seed,
@@ -252,7 +242,6 @@ class MotionPipeline:
         return Samples(
             motions,
             sampled.candidates,
-            sha256,
             encoded - began,
             time.perf_counter() - encoded,
         )
@@ -275,18 +264,15 @@ class MotionPipeline:
             seed: Of all noise.
             on_progress: Called with (motions done, motions in all).
         """
-        denoiser, config, _ = self._weights_for(config)
+        config = self.completed(config)
         order = sorted(range(len(texts)), key=lambda i: frames[i])  # like lengths share a batch
         motions: dict[int, Motion] = {}
         for start in range(0, len(order), _BATCH_ROWS):
             rows = order[start : start + _BATCH_ROWS]
-            every = self._condition(denoiser, [*(texts[i] for i in rows), ""])
             features = sample_batch(
-                denoiser,
+                self._checkpoint.denoiser,
                 torch.tensor([frames[i] for i in rows]),
-                every.expand(torch.arange(len(rows))),
-                every.expand(torch.tensor([len(rows)])),
-                config,
+                *self._given([*(texts[i] for i in rows), ""], config),
                 seed=seed + start,  # batches must not share their noise
                 planted=self._planted(),
             )
@@ -306,12 +292,25 @@ class MotionPipeline:
             )
         )
 
-    def _condition(self, denoiser: Denoiser, texts: Sequence[str]) -> Conditioning:
+    def _given(
+        self, texts: Sequence[str], config: SamplerConfig
+    ) -> tuple[Conditioning, Conditioning, SamplerConfig, Early | None]:
+        """Return what sampling is given: of texts, the last of them empty, and a whole sampler."""
         tokens = self._encoder.encode(texts)
-        with torch.inference_mode():
-            return denoiser.condition(
-                tokens.states.to(denoiser.device), tokens.mask.to(denoiser.device)
-            )
+        count = len(texts) - 1
+
+        def conditioned(denoiser: Denoiser) -> tuple[Conditioning, Conditioning]:
+            states, mask = (x.to(denoiser.device) for x in (tokens.states, tokens.mask))
+            with torch.inference_mode():
+                every = denoiser.condition(states, mask)
+            return every.expand(torch.arange(count)), every.expand(torch.tensor([count]))
+
+        few = self._few_steps_for(config)
+        own = conditioned(self._checkpoint.denoiser)
+        if few is None:
+            return *own, config, None
+        early = Early(few.denoiser, *conditioned(few.denoiser), few.stand_for.taught[-1])
+        return *own, few.stand_for.sampler(config), early
 
     def _decode(self, features: torch.Tensor) -> Motion:
         clean = self._checkpoint.statistics.denormalise(features.cpu().numpy())

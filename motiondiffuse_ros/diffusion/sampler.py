@@ -17,10 +17,30 @@ from motiondiffuse_ros.diffusion.imagination import Imagination
 from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.diffusion.process import make_scheduler
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
-from motiondiffuse_ros.diffusion.windowed_prediction import BATCH_ROWS, WindowedPrediction
+from motiondiffuse_ros.diffusion.windowed_prediction import (
+    BATCH_ROWS,
+    Predictor,
+    WindowedPrediction,
+)
 
 Choice = Callable[[Tensor], Sequence[int]]
 """Which candidates go on, rising, of what each is predicted to become [C, T, D], normalised."""
+
+
+class Early(NamedTuple):
+    """A denoiser that does the first steps instead (`FewSteps`), without guidance.
+
+    Attributes:
+        denoiser: In evaluation mode; of the other's shape.
+        conditioning: Of the same texts.
+        unconditional: Of the empty text.
+        down_to: The last diffusion step it does.
+    """
+
+    denoiser: Denoiser
+    conditioning: Conditioning
+    unconditional: Conditioning
+    down_to: int
 
 
 class Sampled(NamedTuple):
@@ -42,6 +62,7 @@ def sample(
     conditioning: Conditioning,
     unconditional: Conditioning,
     config: SamplerConfig,
+    early: Early | None = None,
     *,
     frames: int,
     candidates: int,
@@ -61,6 +82,7 @@ def sample(
         conditioning: A row for each text.
         unconditional: One row, of the empty text.
         config: Scheduler and guidance.
+        early: Who does the first steps, if another denoiser does.
         frames: Length of the motion.
         candidates: Independent samples.
         seed: Of all noise.
@@ -83,7 +105,7 @@ def sample(
     config = config.completed()
     generator = torch.Generator().manual_seed(seed)
     predict = WindowedPrediction(
-        _guided(denoiser, config, conditioning, unconditional),
+        _predictor(denoiser, config, conditioning, unconditional, early),
         windows,
         part_correction=config.part_correction,
         time_correction=config.time_correction,
@@ -154,6 +176,7 @@ def sample_batch(
     conditioning: Conditioning,
     unconditional: Conditioning,
     config: SamplerConfig,
+    early: Early | None = None,
     *,
     seed: int,
     planted: Planting | None = None,
@@ -166,6 +189,7 @@ def sample_batch(
         conditioning: A row for each text.
         unconditional: One row, of the empty text.
         config: Scheduler and guidance.
+        early: Who does the first steps, if another denoiser does.
         seed: Of all noise.
         planted: What is imposed below `planted_below`.
 
@@ -180,7 +204,7 @@ def sample_batch(
     generator = torch.Generator().manual_seed(seed)
     x = centred_noise((len(lengths), int(lengths.max()), denoiser.config.feature_dim), generator)
     lengths = lengths.to(denoiser.device)
-    guided = _guided(denoiser, config, conditioning, unconditional)
+    guided = _predictor(denoiser, config, conditioning, unconditional, early)
     rows = torch.arange(len(lengths))
 
     def predict(x: Tensor, step: int, imagination: Imagination | None) -> Tensor:
@@ -212,18 +236,27 @@ def _imagination(
     )
 
 
-def _guided(
+def _predictor(
     denoiser: Denoiser,
     config: SamplerConfig,
     conditioning: Conditioning,
     unconditional: Conditioning,
-) -> GuidedDenoiser:
+    early: Early | None,
+) -> Predictor:
     train_steps = denoiser.config.train_steps
-    return GuidedDenoiser(
-        denoiser,
-        conditioning,
-        unconditional,
-        config.times(train_steps),
-        lambda step: config.guidance_at(step / train_steps),
-        bf16=use_bf16(config.precision, denoiser.device),
-    )
+    times = config.times(train_steps)
+    bf16 = use_bf16(config.precision, denoiser.device)
+
+    def scale(step: int) -> float:
+        return config.guidance_at(step / train_steps)
+
+    if early is None:
+        return GuidedDenoiser(denoiser, conditioning, unconditional, times, scale, bf16=bf16)
+    own = [step for step in times if step < early.down_to]
+    late = GuidedDenoiser(denoiser, conditioning, unconditional, own, scale, bf16=bf16)
+    first = GuidedDenoiser(*early[:3], times, lambda step: 1.0, bf16=bf16)
+
+    def predict(noisy: Tensor, step: int, lengths: Tensor, rows: Tensor) -> Tensor:
+        return (first if step >= early.down_to else late)(noisy, step, lengths, rows)
+
+    return predict

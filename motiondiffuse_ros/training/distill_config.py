@@ -16,16 +16,16 @@ class DistillConfig:
     Attributes:
         minutes: Time in all; the learning rate follows it.
         teacher_steps: Denoising steps of the teacher.
-        pairs: How many of the student's steps stand for two of the teacher's, from the noisiest
-            on; the others stand for one. Details are made of the last ones, which are also the
-            cheapest: guidance is not used there.
-        batch_size: Motions at once; each gives `steps` pairs to learn from.
+        pairs: Steps of the student, each of which stands for two of the teacher's, from the
+            noisiest on. Those are the costly ones: guidance doubles them, and all candidates do
+            them.
+        then: Diffusion steps at which the teacher goes on, without guidance, from where the student
+            arrives.
+        batch_size: Motions at once; each is taken through all steps of the student.
         learning_rate: Peak of the cosine schedule.
         warmup_steps: Steps of linear warm-up.
         weight_decay: Of AdamW, on matrices.
         gradient_clip: Largest gradient norm.
-        whole: Share of batches that go all the way to clean motions; the others are taught half of
-            the steps, the noisiest, which take longest to learn.
         statements: Share of texts that state kinematics; see `TrainConfig`.
         deeds: Share of texts drawn by what is done; see `TrainConfig`.
         difference_weight: Weight of the loss on frame-to-frame differences.
@@ -41,13 +41,13 @@ class DistillConfig:
 
     minutes: float = 60.0
     teacher_steps: int = 8
-    pairs: int = 3
+    pairs: int = 2
+    then: tuple[int, ...] = (822, 512, 283)
     batch_size: int = 16
     learning_rate: float = 3e-4
     warmup_steps: int = 50
     weight_decay: float = 0.0
     gradient_clip: float = 1.0
-    whole: float = 0.4
     statements: float = 0.3
     deeds: float = 0.2
     difference_weight: float = 3.0
@@ -67,12 +67,12 @@ class DistillConfig:
         for name in (*positive, "validate_steps"):
             if not getattr(self, name) > 0:
                 raise InputError(f"distilling {name} must be positive, got {getattr(self, name)}")
-        if not 0 <= 2 * self.pairs <= self.teacher_steps:
+        if not 2 <= 2 * self.pairs < self.teacher_steps:
             raise InputError(
-                f"distilling pairs must be from 0 to half of the {self.teacher_steps} steps of the "
-                f"teacher, got {self.pairs}"
+                "distilling pairs must be at least 1 and less than half of the teacher's "
+                f"{self.teacher_steps} steps, got {self.pairs}"
             )
-        for name in ("whole", "statements", "deeds", "ema_decay"):
+        for name in ("statements", "deeds", "ema_decay"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise InputError(
                     f"distilling {name} must be from 0 to 1, got {getattr(self, name)}"

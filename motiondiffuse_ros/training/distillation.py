@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import torch
 from diffusers.training_utils import EMAModel
@@ -18,15 +18,15 @@ from torch import Tensor
 
 from motiondiffuse_ros.corpus.store import Corpus
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
-from motiondiffuse_ros.diffusion.constraints import OnPlainFeatures
 from motiondiffuse_ros.diffusion.few_steps import FewSteps, FewStepsOf
 from motiondiffuse_ros.diffusion.guidance import GuidedDenoiser
 from motiondiffuse_ros.diffusion.precision import use_bf16
 from motiondiffuse_ros.diffusion.process import make_scheduler, to_clean
 from motiondiffuse_ros.diffusion.sampler import centred_noise
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
-from motiondiffuse_ros.motion.planted_feet import WHILE_DENOISING, PlantedFeet
+from motiondiffuse_ros.errors import InputError
 from motiondiffuse_ros.text import TextEncoder
+from motiondiffuse_ros.training.checks import check_representation
 from motiondiffuse_ros.training.distill_config import DistillConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.optimisation import learning_rate, parameter_groups
@@ -34,23 +34,23 @@ from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
 CHECKPOINT_FOLDER = "checkpoint"
+CARD_FILE = "few_steps.json"
 _VALIDATION_BATCHES = 4
 _VALIDATION_SEED = 1234
 
 
-@dataclass(frozen=True)
-class Jump:
-    """What the student does in one step.
+class Jump(NamedTuple):
+    """What the student does in one step and its teacher in two.
 
     Attributes:
-        start: Diffusion step from which student and teacher go.
-        middle: The teacher's second; None if it takes one step, too.
-        end: Where both arrive; None is the clean motion.
+        start: Diffusion step from which both go.
+        middle: The teacher's second.
+        end: Where both arrive.
     """
 
     start: int
-    middle: int | None
-    end: int | None
+    middle: int
+    end: int
 
 
 def jumps(times: Sequence[int], pairs: int) -> list[Jump]:
@@ -58,13 +58,9 @@ def jumps(times: Sequence[int], pairs: int) -> list[Jump]:
 
     Args:
         times: The teacher's diffusion steps, falling.
-        pairs: How many of the student's steps, from the first on, stand for two of them.
+        pairs: How many steps the student has; the teacher has more than twice as many.
     """
-    starts = [*range(0, 2 * pairs, 2), *range(2 * pairs, len(times))]
-    ends = [*(times[i] for i in starts[1:]), None]
-    middles = [times[i + 1] if i < 2 * pairs else None for i in starts]
-    rows = zip(starts, middles, ends, strict=True)
-    return [Jump(times[i], middle, end) for i, middle, end in rows]
+    return [Jump(*times[i : i + 3]) for i in range(0, 2 * pairs, 2)]
 
 
 class Levels:
@@ -73,42 +69,38 @@ class Levels:
     def __init__(self, alphas_cumprod: Tensor) -> None:
         self._alphas = alphas_cumprod.double().tolist()
 
-    def __call__(self, step: int | None) -> tuple[float, float]:
-        """Return the shares of signal and of noise; None is the clean motion."""
-        alpha = 1.0 if step is None else self._alphas[step]
-        return math.sqrt(alpha), math.sqrt(1.0 - alpha)
+    def __call__(self, step: int) -> tuple[float, float]:
+        """Return the shares of signal and of noise."""
+        return math.sqrt(self._alphas[step]), math.sqrt(1.0 - self._alphas[step])
 
-    def moved(self, x: Tensor, clean: Tensor, start: int, end: int | None) -> Tensor:
+    def moved(self, x: Tensor, clean: Tensor, start: int, end: int) -> Tensor:
         """Return where a step of first order goes (DDIM, Song et al. 2021).
 
         Args:
             x: Noisy features at `start`.
             clean: What they are predicted to become.
             start: Diffusion step.
-            end: The next one; None is the clean motion.
+            end: The next one.
         """
         keep, add = self._parts(start, end)
         return keep * x + add * clean
 
-    def aim(self, x: Tensor, moved: Tensor, start: int, end: int | None) -> Tensor:
+    def aim(self, x: Tensor, moved: Tensor, start: int, end: int) -> Tensor:
         """Return what must be predicted for a step of first order to arrive at `moved`."""
         keep, add = self._parts(start, end)
         return (moved - keep * x) / add
 
-    def _parts(self, start: int, end: int | None) -> tuple[float, float]:
+    def _parts(self, start: int, end: int) -> tuple[float, float]:
         (signal, noise), (signal_end, noise_end) = self(start), self(end)
         keep = noise_end / noise
         return keep, signal_end - keep * signal
 
-    def lead(self, start: int, middle: int, end: int | None) -> float:
+    def lead(self, jump: Jump) -> float:
         """Return how far the second of two steps goes on in the direction of their predictions.
 
-        DPM-Solver++ of second order (Lu et al. 2022, algorithm 2); a step to the clean motion is
-        of first order, as in diffusers.
+        DPM-Solver++ of second order (Lu et al. 2022, algorithm 2).
         """
-        if end is None:
-            return 0.0
-        first, second, third = (math.log(s / n) for s, n in map(self, (start, middle, end)))
+        first, second, third = (math.log(s / n) for s, n in map(self, jump))
         return (third - second) / (2.0 * (second - first))
 
 
@@ -120,13 +112,13 @@ class DistillProgress:
         step: Optimiser steps done.
         minutes: Time so far.
         loss: Running mean of the loss on features.
-        validation: Last difference of whole samples from the teacher's, None before the first.
+        validation: Last squared error on held-out texts, averaged over steps.
     """
 
     step: int
     minutes: float
     loss: float
-    validation: float | None
+    validation: float
 
 
 class Distiller:
@@ -136,7 +128,8 @@ class Distiller:
     starts from noise and goes on from where its own steps lead, and at each of them is taught where
     the teacher would have gone from there.
 
-    Writes under `out`: checkpoint/ (averaged weights), config.json and log.jsonl.
+    Writes under `out`: checkpoint/ (averaged weights beside the teacher's, in few_steps.json how
+    they came about) and log.jsonl.
 
     Attributes:
         student: What is trained.
@@ -163,14 +156,24 @@ class Distiller:
             out: Folder of the run.
             student: Of which to start; the teacher's weights if None.
             clock: Of the run's time [s].
+
+        Raises:
+            InputError: If the settings do not fit together.
+            CheckpointError: If the corpus does not speak the teacher's representation.
         """
         config.validate()
+        check_representation(corpus, teacher.denoiser.config)
         self._sampler = SamplerConfig(steps=config.teacher_steps)
         self._corpus, self._config, self._out, self._clock = corpus, config, out, clock
         self._teacher, self._stopping = teacher, False
         start = teacher if student is None else student
         shape = teacher.denoiser.config
         self._jumps = jumps(self._sampler.times(shape.train_steps), config.pairs)
+        if self._jumps[-1].end != config.then[0]:
+            raise InputError(
+                f"distilling then must begin at {self._jumps[-1].end}, where the student arrives, "
+                f"got {config.then}"
+            )
         self._levels = Levels(make_scheduler("ddpm", shape).alphas_cumprod)
         self.student = deepcopy(start.denoiser).train()
         self._optimizer = torch.optim.AdamW(
@@ -184,8 +187,8 @@ class Distiller:
         )
         self._bf16 = use_bf16(config.precision)
         self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
-        self._planted = OnPlainFeatures(PlantedFeet(corpus.fps, WHILE_DENOISING), corpus.statistics)
         self._step, self._seconds = 0, 0.0
+        self._apart: dict[str, Any] = {}
         train, val = corpus.split("train"), corpus.split("val")
         windows = WindowSampler(
             corpus,
@@ -208,13 +211,12 @@ class Distiller:
         self._validation = [next(batches) for _ in range(_VALIDATION_BATCHES)]
         torch.manual_seed(config.seed)  # the same noise whatever was drawn before
         out.mkdir(parents=True, exist_ok=True)
-        settings = {
+        self._settings = {
             "distilling": config.to_dict(),
             "sampler": asdict(self._sampler),
             "teacher": teacher.sha256,
             "started_from": start.sha256,
         }
-        (out / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
 
     def stop(self) -> None:
         """Ask for the end of `run` after the present step, also from a signal handler."""
@@ -248,10 +250,17 @@ class Distiller:
         self.save()
 
     def save(self) -> None:
-        """Write the averaged weights."""
+        """Write the averaged weights beside the teacher's, and how they came about."""
+        folder = self._out / CHECKPOINT_FOLDER
         with self._averaged():
-            few = FewSteps(self.student, FewStepsOf(tuple(jump.start for jump in self._jumps)))
-            replace(self._teacher, few_steps=few).save_pretrained(self._out / CHECKPOINT_FOLDER)
+            few = FewSteps(
+                self.student,
+                FewStepsOf(tuple(jump.start for jump in self._jumps), self._config.then),
+            )
+            replace(self._teacher, few_steps=few).save_pretrained(folder)
+        motions = self._step * self._config.batch_size
+        card = {**self._settings, **self._row(), "motions": motions, **self._apart}
+        (folder / CARD_FILE).write_text(json.dumps(card, indent=2) + "\n")
 
     def _train_step(self, batch: WindowBatch) -> list[Losses]:
         config = self._config
@@ -262,10 +271,7 @@ class Distiller:
                 warmup_steps=config.warmup_steps,
                 done=self._seconds / (60.0 * config.minutes),
             )
-        whole = torch.rand(()).item() < config.whole
-        count = len(self._jumps) if whole else max(1, len(self._jumps) // 2)
-        noise = centred_noise(batch.features.shape, None)
-        total, by_jump, _ = self._taught(batch, noise, self._jumps[:count])
+        total, by_jump = self._taught(batch, centred_noise(batch.features.shape, None))
         self._optimizer.zero_grad(set_to_none=True)
         (total / len(by_jump)).backward()
         torch.nn.utils.clip_grad_norm_(self.student.parameters(), config.gradient_clip)
@@ -273,10 +279,8 @@ class Distiller:
         self._ema.step(self.student.parameters())
         return by_jump
 
-    def _taught(
-        self, batch: WindowBatch, x: Tensor, jumps: Sequence[Jump]
-    ) -> tuple[Tensor, list[Losses], Tensor]:
-        """Return the loss over some jumps from noise `x`, its terms, and where they lead."""
+    def _taught(self, batch: WindowBatch, x: Tensor) -> tuple[Tensor, list[Losses]]:
+        """Return the loss over the student's steps from noise `x`, and its terms."""
         config = self._config
         tokens = self._captions.batch(batch.texts)
         lengths = torch.full((len(x),), x.shape[1])
@@ -284,7 +288,7 @@ class Distiller:
         with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
             conditioning = self.student.condition(tokens.states, tokens.mask)
         total, by_jump = torch.zeros(()), []
-        for jump in jumps:
+        for jump in self._jumps:
             aim = self._aim(guided, x, jump)
             steps = torch.full_like(lengths, jump.start)
             with torch.autocast("cpu", torch.bfloat16, enabled=self._bf16):
@@ -301,7 +305,7 @@ class Distiller:
                 + config.slide_weight * losses.slide
             )
             x = self._levels.moved(x, clean.detach(), jump.start, jump.end)
-        return total, by_jump, x
+        return total, by_jump
 
     @torch.no_grad()
     def _aim(self, guided: GuidedDenoiser, x: Tensor, jump: Jump) -> Tensor:
@@ -309,16 +313,12 @@ class Distiller:
         lengths, rows = torch.full((len(x),), x.shape[1]), torch.arange(len(x))
 
         def predicted(x: Tensor, step: int) -> Tensor:
-            clean = self._clean(guided(x, step, lengths, rows), x, step)
-            held = step < self._sampler.planted_below * self._teacher.denoiser.config.train_steps
-            return self._planted(clean) if held else clean
+            return self._clean(guided(x, step, lengths, rows), x, step)
 
         first = predicted(x, jump.start)
-        if jump.middle is None:
-            return first
         at_middle = self._levels.moved(x, first, jump.start, jump.middle)
         second = predicted(at_middle, jump.middle)
-        second = second + self._levels.lead(jump.start, jump.middle, jump.end) * (second - first)
+        second = second + self._levels.lead(jump) * (second - first)
         arrived = self._levels.moved(at_middle, second, jump.middle, jump.end)
         return self._levels.aim(x, arrived, jump.start, jump.end)
 
@@ -344,23 +344,18 @@ class Distiller:
 
     @torch.no_grad()
     def _validate(self) -> float:
-        """Return how far the averaged student's samples are from the teacher's, squared."""
+        """Return the averaged student's squared error on held-out texts, over its steps."""
         generator = torch.Generator().manual_seed(_VALIDATION_SEED)
-        apart, by_jump = [], []
+        by_jump = []
         with self._averaged():
             for batch in self._validation:
                 noise = centred_noise(batch.features.shape, generator)
-                guided, wanted = self._guided(batch.texts), noise
-                for jump in self._jumps:
-                    aim = self._aim(guided, wanted, jump)
-                    wanted = self._levels.moved(wanted, aim, jump.start, jump.end)
-                _, losses, got = self._taught(batch, noise, self._jumps)
-                apart.append((got - wanted).square().mean().item())
+                _, losses = self._taught(batch, noise)
                 by_jump.append([each.plain.item() for each in losses])
-        means = torch.tensor(by_jump).mean(0).tolist()
-        validation = sum(apart) / len(apart)
-        self._append_log({"validation": validation, "validation_by_jump": means})
-        return validation
+        means = torch.tensor(by_jump).mean(0)
+        self._apart = {"validation": means.mean().item(), "validation_by_step": means.tolist()}
+        self._append_log(self._apart)
+        return self._apart["validation"]
 
     @contextmanager
     def _averaged(self) -> Iterator[None]:
@@ -374,6 +369,8 @@ class Distiller:
         self._ema.restore(parameters)
 
     def _append_log(self, values: dict[str, Any]) -> None:
-        row = {"step": self._step, "minutes": self._seconds / 60.0, **values}
         with (self._out / "log.jsonl").open("a", encoding="utf-8") as file:
-            file.write(json.dumps(row) + "\n")
+            file.write(json.dumps({**self._row(), **values}) + "\n")
+
+    def _row(self) -> dict[str, float]:
+        return {"step": self._step, "minutes": self._seconds / 60.0}

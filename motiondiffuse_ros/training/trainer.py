@@ -24,6 +24,7 @@ from motiondiffuse_ros.errors import Cancelled, CheckpointError
 from motiondiffuse_ros.evaluation.evaluator import CRITIC_FOLDER, Evaluator
 from motiondiffuse_ros.text import TextEncoder
 from motiondiffuse_ros.training.alignment import TextAlignment
+from motiondiffuse_ros.training.checks import check_representation
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
@@ -85,11 +86,7 @@ class Trainer:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         config.validate()
-        if corpus.representation.name != denoiser_config.representation:
-            raise CheckpointError(
-                f"the denoiser speaks {denoiser_config.representation}, the corpus holds "
-                f"{corpus.representation.name}, which cannot be trained on yet"
-            )
+        check_representation(corpus, denoiser_config)
         self._corpus, self._encoder, self._config, self._out = corpus, encoder, config, out
         self._ranks, self._clock, self._stopping = ranks, clock, False
         torch.manual_seed(config.seed)

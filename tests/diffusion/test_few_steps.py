@@ -16,7 +16,7 @@ from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.manifest import CONFIG_FILE
 from motiondiffuse_ros.text import load_text_encoder
 
-AT = (999, 900, 300)
+OF = FewStepsOf((999, 900), (300,))
 PLAIN = SamplerConfig(precision="fp32")
 
 
@@ -29,7 +29,7 @@ def folder(checkpoint, tmp_path):
     taught = replace(
         checkpoint,
         text_encoder_sha256=encoder.sha256,
-        few_steps=FewSteps(student, FewStepsOf(AT)),
+        few_steps=FewSteps(student, OF),
     )
     taught.save_pretrained(tmp_path / "weights")
     return tmp_path / "weights"
@@ -42,10 +42,10 @@ def pipeline(folder):
 
 def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
     few = Checkpoint.from_pretrained(folder).few_steps
-    assert few.stand_for == FewStepsOf(AT)
+    assert few.stand_for == OF
     for same in (PLAIN, replace(PLAIN, steps=3), replace(PLAIN, planted_below=0.0)):
         assert pipeline.completed(same).steps == 3
-        assert pipeline.sha256_of(same) == few.sha256 != pipeline.weights_sha256
+        assert pipeline.few_steps_sha256(same) == few.sha256 != pipeline.weights_sha256
     for other in (
         replace(PLAIN, guidance_scale=2.0),
         replace(PLAIN, scheduler="ddpm"),
@@ -53,11 +53,11 @@ def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
         replace(PLAIN, guidance_interval=(0.5, 1.0)),
     ):
         assert pipeline.completed(other).steps == STEPS
-        assert pipeline.sha256_of(other) == pipeline.weights_sha256
-    assert pipeline.sha256_of(replace(PLAIN, steps=4)) == pipeline.weights_sha256
+        assert pipeline.few_steps_sha256(other) == ""
+    assert pipeline.few_steps_sha256(replace(PLAIN, steps=4)) == ""
 
 
-def test_what_they_sample_is_theirs(pipeline):
+def test_what_they_do_first_shows(pipeline):
     def rotations(config):
         return pipeline.batch(["a person walks"], [30], config=config, seed=0)[0].rotations
 
@@ -70,12 +70,13 @@ def test_what_they_sample_is_theirs(pipeline):
     ("change", "says"),
     [
         (lambda c: c["files"].pop(FEW_STEPS_FILE), "without a few_steps.safetensors"),
-        (lambda c: c["few_steps"].pop("at"), "few steps of a checkpoint need"),
+        (lambda c: c["few_steps"].pop("taught"), "few steps of a checkpoint need"),
         (lambda c: c["few_steps"].update(wings=2), "few steps of a checkpoint need"),
         (lambda c: c["few_steps"].update(scheduler="magic"), "schedulers are"),
-        (lambda c: c["few_steps"].update(guidance_interval=3), "guidance_interval"),
-        (lambda c: c["few_steps"].update(at=[999, 300, 900]), "falling"),
-        (lambda c: c["few_steps"].update(at=["many"]), "few steps of a checkpoint"),
+        (lambda c: c["few_steps"].update(guidance_interval=3), "few steps of a checkpoint"),
+        (lambda c: c["few_steps"].update(taught=[999, 200]), "falling"),
+        (lambda c: c["few_steps"].update(then=[]), "some that were taught and some"),
+        (lambda c: c["few_steps"].update(then=["many"]), "few steps of a checkpoint"),
     ],
 )
 def test_spoilt_ones_are_refused_with_the_reason(folder, change, says):
