@@ -68,7 +68,7 @@ class PlannerConfig:
         weights: Checkpoint folder; None is the shipped one.
         text_encoder: Folder of the text encoder's files, if the checkpoint was trained with CLIP.
         scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
-        steps: Denoising steps; 0 is as few as the weights need (`MotionPipeline.completed`).
+        steps: Denoising steps; 0 is as few as the request needs (`Planner.completed`).
         guidance_scale: Classifier-free guidance.
         part_correction: λ₁ of eq. 10; see `SamplerConfig`.
         time_correction: λ₂ of eq. 11.
@@ -313,8 +313,16 @@ class Planner:
         """Frame rate of the motions, Hz."""
         return self._pipeline.fps
 
-    def completed(self, request: MotionRequest) -> MotionRequest:
-        """Return a request with all defaults filled in but the seed."""
+    def completed(self, request: MotionRequest, *, continues: bool = False) -> MotionRequest:
+        """Return a request with all defaults filled in but the seed.
+
+        Few steps are taken where nothing but whole-body texts is asked for: they leave what is
+        given, and texts on parts, fewer steps to become one with the rest.
+
+        Args:
+            request: Valid.
+            continues: Whether the motion continues another.
+        """
         config = self.config
         request = request.with_defaults(
             duration=request.total_seconds,
@@ -322,7 +330,12 @@ class Planner:
             candidates=config.candidates,
         )
         assert request.guidance_scale is not None
-        sampler = self._pipeline.completed(config.sampler(config.steps, request.guidance_scale))
+        sampler = config.sampler(config.steps, request.guidance_scale)
+        parts = any(segment.parts for segment in request.segments)
+        if continues or request.edit is not None or request.waypoints or parts:
+            sampler = sampler.completed()
+        else:
+            sampler = self._pipeline.completed(sampler)
         return request.with_defaults(steps=sampler.steps)
 
     def restarted(self, plan: Plan, state: StartState) -> Plan:
@@ -384,7 +397,8 @@ class Planner:
         self, request: MotionRequest, robot: Robot, start: Start, track: bool, watch: _Stages
     ) -> Plan:
         config, origin = self.config, Origin(request, start)
-        request = self.completed(request).with_defaults(seed=secrets.randbelow(_MAX_DRAWN_SEED))
+        request = self.completed(request, continues=start.lead_in is not None)
+        request = request.with_defaults(seed=secrets.randbelow(_MAX_DRAWN_SEED))
         texts, frames = timeline(request, self._pipeline.fps)
         critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
         match = None if critic is None else TextMatch(critic, texts)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from motiondiffuse_ros.continuation import Start
+from motiondiffuse_ros.diffusion.sampler_config import STEPS
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import Cancelled, MotionFileError, RequestError, RobotError
 from motiondiffuse_ros.motion import Motion
@@ -71,6 +72,27 @@ def test_a_drawn_seed_is_recorded_and_reproduces(planner):
     first = planner.plan(MotionRequest.from_text("a person bows", 2.0))
     again = planner.plan(MotionRequest.from_text("a person bows", 2.0, seed=first.seed))
     np.testing.assert_array_equal(again.motion.root, first.motion.root)
+
+
+def test_few_steps_are_taken_where_nothing_but_whole_body_texts_is_asked_for(planner):
+    default = Planner(PlannerConfig(track=False))
+    plain = MotionRequest.from_text("a person walks forward", 2.0, seed=1, candidates=1)
+    few = default.completed(plain).steps
+    assert few < STEPS
+    assert default.completed(replace(plain, steps=30)).steps == 30
+    assert default.completed(plain, continues=True).steps == STEPS
+    for other in (
+        replace(plain, guidance_scale=2.0),
+        replace(plain, waypoints=(Waypoint(2.0, 1.0, 0.0),)),
+        replace(plain, segments=(*plain.segments, Segment("waves", 0.0, 2.0, ("right_arm",)))),
+    ):
+        assert default.completed(other).steps == STEPS
+
+    plan = default.plan(plain)
+    assert plan.request.steps == few
+    assert plan.few_steps_sha256 == default.hashes["weights/few_steps.safetensors"]
+    assert plan.weights_sha256 == default.hashes["weights/model.safetensors"]
+    assert planner.plan(plain).few_steps_sha256 == ""
 
 
 def test_files_follow_the_contract(plan, tmp_path):

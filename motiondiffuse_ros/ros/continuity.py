@@ -66,7 +66,8 @@ class Continuity:
             return None
         if latest.states.trajectory.joint_names != robot.joint_names:
             return None
-        expected = RESERVE * self._pace * _work(self._planner.completed(request)) + SWITCH
+        work = _work(self._planner.completed(request, continues=True))
+        expected = RESERVE * self._pace * work + SWITCH
         time = self._clock.now() + Duration(nanoseconds=round(expected * 1e9))
         if at is not None:
             time = _later(time, at)

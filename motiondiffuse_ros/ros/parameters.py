@@ -112,7 +112,7 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
     "steps": ParameterSpec(
         _DEFAULT.steps,
-        "denoising steps of requests that set none; 0 = as few as the weights need",
+        "denoising steps of requests that set none; 0 = as few as each needs",
         (0, LIMITS.max_steps),
     ),
     "guidance_scale": ParameterSpec(
