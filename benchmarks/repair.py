@@ -83,7 +83,7 @@ def main(arguments: Arguments) -> None:
         items = [items[i] for i in rng.permutation(len(items))[:_QUICK_CLIPS]]
     real = [corpus.representation.decode(item.features, corpus.fps) for item in items]
     rows = {"real": real}
-    default = pipeline.completed(SamplerConfig(steps=_QUICK_STEPS if arguments.quick else 0))
+    default = SamplerConfig(steps=_QUICK_STEPS) if arguments.quick else SamplerConfig()
     for name, planted in (("plain", 0.0), ("planted in the loop", default.planted_below)):
         config = replace(default, planted_below=planted)
         sets = _sampled(pipeline, items, config, arguments)

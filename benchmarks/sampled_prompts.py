@@ -28,7 +28,7 @@ class Sampling:
     guidance_scale: float = PlannerConfig.guidance_scale
     """Weight of the text."""
     steps: int = PlannerConfig.steps
-    """Denoising steps; 0 is as few as the weights need."""
+    """Denoising steps."""
 
 
 def sample_prompts(

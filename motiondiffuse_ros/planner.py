@@ -68,7 +68,7 @@ class PlannerConfig:
         weights: Checkpoint folder; None is the shipped one.
         text_encoder: Folder of the text encoder's files, if the checkpoint was trained with CLIP.
         scheduler: Sampler of the diffusion: ddim, ddpm or dpm-solver++.
-        steps: Denoising steps; 0 is as few as the request needs (`Planner.completed`).
+        steps: Denoising steps; see `Planner.hurried`.
         guidance_scale: Classifier-free guidance.
         part_correction: λ₁ of eq. 10; see `SamplerConfig`.
         time_correction: λ₂ of eq. 11.
@@ -313,30 +313,29 @@ class Planner:
         """Frame rate of the motions, Hz."""
         return self._pipeline.fps
 
-    def completed(self, request: MotionRequest, *, continues: bool = False) -> MotionRequest:
-        """Return a request with all defaults filled in but the seed.
+    def hurried(self, request: MotionRequest) -> MotionRequest:
+        """Return a request with as few steps as the weights were taught to need, if they were.
 
-        Few steps are taken where nothing but whole-body texts is asked for: they leave what is
-        given, and texts on parts, fewer steps to become one with the rest.
-
-        Args:
-            request: Valid.
-            continues: Whether the motion continues another.
+        Others stay as they are: of other guidance, and those that ask for more than whole-body
+        texts, since few steps leave texts on parts, and what is given, few steps to become one
+        with the rest.
         """
-        config = self.config
-        request = request.with_defaults(
+        given = request.edit is not None or request.waypoints
+        if given or any(segment.parts for segment in request.segments):
+            return request
+        whole = self._completed(request)
+        few = self._pipeline.few_steps(self._sampler(whole))
+        assert whole.steps is not None
+        return request if few is None or whole.steps < few else replace(request, steps=few)
+
+    def _completed(self, request: MotionRequest) -> MotionRequest:
+        """Return a request with all defaults filled in but the seed."""
+        return request.with_defaults(
             duration=request.total_seconds,
-            guidance_scale=config.guidance_scale,
-            candidates=config.candidates,
+            guidance_scale=self.config.guidance_scale,
+            steps=self.config.steps,
+            candidates=self.config.candidates,
         )
-        assert request.guidance_scale is not None
-        sampler = config.sampler(config.steps, request.guidance_scale)
-        parts = any(segment.parts for segment in request.segments)
-        if continues or request.edit is not None or request.waypoints or parts:
-            sampler = sampler.completed()
-        else:
-            sampler = self._pipeline.completed(sampler)
-        return request.with_defaults(steps=sampler.steps)
 
     def restarted(self, plan: Plan, state: StartState) -> Plan:
         """Return a plan that starts from another state than it was made for.
@@ -397,8 +396,7 @@ class Planner:
         self, request: MotionRequest, robot: Robot, start: Start, track: bool, watch: _Stages
     ) -> Plan:
         config, origin = self.config, Origin(request, start)
-        request = self.completed(request, continues=start.lead_in is not None)
-        request = request.with_defaults(seed=secrets.randbelow(_MAX_DRAWN_SEED))
+        request = self._completed(request).with_defaults(seed=secrets.randbelow(_MAX_DRAWN_SEED))
         texts, frames = timeline(request, self._pipeline.fps)
         critic = None if request.candidates == 1 else self._critic  # there is nothing to choose
         match = None if critic is None else TextMatch(critic, texts)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from motiondiffuse_ros.continuation import Start
-from motiondiffuse_ros.diffusion.sampler_config import STEPS
 from motiondiffuse_ros.edit import Edit
 from motiondiffuse_ros.errors import Cancelled, MotionFileError, RequestError, RobotError
 from motiondiffuse_ros.motion import Motion
@@ -74,24 +73,22 @@ def test_a_drawn_seed_is_recorded_and_reproduces(planner):
     np.testing.assert_array_equal(again.motion.root, first.motion.root)
 
 
-def test_few_steps_are_taken_where_nothing_but_whole_body_texts_is_asked_for(planner):
-    default = Planner(PlannerConfig(track=False))
+def test_who_is_in_a_hurry_takes_few_steps_where_whole_body_texts_are_all(planner):
     plain = MotionRequest.from_text("a person walks forward", 2.0, seed=1, candidates=1)
-    few = default.completed(plain).steps
-    assert few < STEPS
-    assert default.completed(replace(plain, steps=30)).steps == 30
-    assert default.completed(plain, continues=True).steps == STEPS
+    few = planner.hurried(plain).steps
+    assert few < planner.config.steps
+    assert planner.hurried(replace(plain, steps=2)).steps == 2
     for other in (
         replace(plain, guidance_scale=2.0),
         replace(plain, waypoints=(Waypoint(2.0, 1.0, 0.0),)),
         replace(plain, segments=(*plain.segments, Segment("waves", 0.0, 2.0, ("right_arm",)))),
     ):
-        assert default.completed(other).steps == STEPS
+        assert planner.hurried(other) == other
 
-    plan = default.plan(plain)
+    plan = planner.plan(planner.hurried(plain))
     assert plan.request.steps == few
-    assert plan.few_steps_sha256 == default.hashes["weights/few_steps.safetensors"]
-    assert plan.weights_sha256 == default.hashes["weights/model.safetensors"]
+    assert plan.few_steps_sha256 == planner.hashes["weights/few_steps.safetensors"]
+    assert plan.weights_sha256 == planner.hashes["weights/model.safetensors"]
     assert planner.plan(plain).few_steps_sha256 == ""
 
 

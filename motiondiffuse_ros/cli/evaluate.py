@@ -68,7 +68,6 @@ def main(arguments: Sequence[str]) -> int:
     )
     weights = options.weights or shipped_weights()
     pipeline = MotionPipeline.from_pretrained(weights, options.text_encoder)
-    sampler = pipeline.completed(options.sampler)
     for what, name in (
         ("weights", pipeline.representation.name),
         ("evaluator", evaluator.representation),
@@ -90,7 +89,7 @@ def main(arguments: Sequence[str]) -> int:
         sampled = bar.add_task("sampling", total=None)
         model = Model(
             pipeline,
-            sampler,
+            options.sampler,
             lambda done, total: bar.update(sampled, completed=done, total=total),
         )
         others = corpus.split("all" if options.split == "all" else "train")
@@ -120,9 +119,9 @@ def main(arguments: Sequence[str]) -> int:
         "repeats": options.protocol.repeats,
         "weights": weights.name,
         "weights_sha256": pipeline.weights_sha256,
-        "few_steps_sha256": pipeline.few_steps_sha256(sampler),
+        "few_steps_sha256": pipeline.few_steps_sha256(options.sampler),
         "evaluator_sha256": evaluator.sha256,
-        "sampler": vars(sampler),
+        "sampler": vars(options.sampler),
         "protocol": options.protocol.to_dict(),
         "rows": rows_to_json(texts),
         "actions": None if actions is None else rows_to_json(actions),

@@ -131,23 +131,18 @@ class MotionPipeline:
         """Hash of the weights file."""
         return self._checkpoint.sha256
 
-    def completed(self, config: SamplerConfig) -> SamplerConfig:
-        """Return a sampler with as few steps as the weights need, if it sets none."""
+    def few_steps(self, config: SamplerConfig) -> int | None:
+        """Return in how many steps the weights were taught to do what a sampler does in more."""
         few = self._checkpoint.few_steps
-        if few is None or not few.stand_for.fit(config):
-            return config.completed()
-        return config.completed(few.stand_for.steps)
+        return None if few is None or not few.stand_for.fit(config) else few.stand_for.steps
 
     def _few_steps_for(self, config: SamplerConfig) -> FewSteps | None:
-        """Return the weights for few steps, if a completed sampler asks for as many."""
-        few = self._checkpoint.few_steps
-        if few is None or not few.stand_for.fit(config) or config.steps != few.stand_for.steps:
-            return None
-        return few
+        """Return the weights for few steps, if a sampler asks for as many."""
+        return self._checkpoint.few_steps if config.steps == self.few_steps(config) else None
 
     def few_steps_sha256(self, config: SamplerConfig) -> str:
         """Return the hash of the weights that do the first steps of a sampler; empty if none do."""
-        few = self._few_steps_for(self.completed(config))
+        few = self._few_steps_for(config)
         return "" if few is None else few.sha256
 
     def on_path(self, points: Sequence[PathPoint], frames: int) -> Constraint:
@@ -212,7 +207,7 @@ class MotionPipeline:
             assert choose is not None
             return choose(list(self._checkpoint.statistics.denormalise(clean.cpu().numpy())))
 
-        denoiser, config = self._checkpoint.denoiser, self.completed(config)
+        denoiser = self._checkpoint.denoiser
         windows = compose(
             texts,
             frames,
@@ -264,7 +259,6 @@ class MotionPipeline:
             seed: Of all noise.
             on_progress: Called with (motions done, motions in all).
         """
-        config = self.completed(config)
         order = sorted(range(len(texts)), key=lambda i: frames[i])  # like lengths share a batch
         motions: dict[int, Motion] = {}
         for start in range(0, len(order), _BATCH_ROWS):
@@ -295,7 +289,7 @@ class MotionPipeline:
     def _given(
         self, texts: Sequence[str], config: SamplerConfig
     ) -> tuple[Conditioning, Conditioning, SamplerConfig, Early | None]:
-        """Return what sampling is given: of texts, the last of them empty, and a whole sampler."""
+        """Return what sampling is given of texts, the last one empty, and the sampler to use."""
         tokens = self._encoder.encode(texts)
         count = len(texts) - 1
 

@@ -102,7 +102,6 @@ def sample(
         SamplingError: If the result is not finite.
     """
     config.validate()
-    config = config.completed()
     generator = torch.Generator().manual_seed(seed)
     predict = WindowedPrediction(
         _predictor(denoiser, config, conditioning, unconditional, early),
@@ -200,7 +199,6 @@ def sample_batch(
         SamplingError: If the result is not finite.
     """
     config.validate()
-    config = config.completed()
     generator = torch.Generator().manual_seed(seed)
     x = centred_noise((len(lengths), int(lengths.max()), denoiser.config.feature_dim), generator)
     lengths = lengths.to(denoiser.device)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 from motiondiffuse_ros.diffusion.precision import check_precision
 from motiondiffuse_ros.diffusion.process import SCHEDULERS, denoising_steps
 from motiondiffuse_ros.errors import RequestError
-
-STEPS = 8
-"""Steps of DPM-Solver++ that weights need which were not taught to need fewer."""
 
 _FRACTIONS = (
     "part_correction",
@@ -27,7 +24,7 @@ class SamplerConfig:
 
     Attributes:
         scheduler: One of `SCHEDULERS`.
-        steps: Denoising steps; 0 is as few as the weights need.
+        steps: Denoising steps.
         spacing: How much denser they are where there is more noise; see `denoising_steps`.
         at: The diffusion steps themselves, falling, instead of `steps` and `spacing`.
         guidance_scale: Classifier-free guidance; 1 is the conditional model alone.
@@ -46,7 +43,7 @@ class SamplerConfig:
     """
 
     scheduler: str = "dpm-solver++"
-    steps: int = 0
+    steps: int = 8
     spacing: float = 2.5
     at: tuple[int, ...] = ()
     guidance_scale: float = 4.0
@@ -65,8 +62,8 @@ class SamplerConfig:
                 f"unknown scheduler '{self.scheduler}'; the schedulers are {', '.join(SCHEDULERS)}"
             )
         check_precision(self.precision)
-        if not 0 <= self.steps <= 1000:
-            raise RequestError(f"steps must be from 0 to 1000, got {self.steps}")
+        if not 1 <= self.steps <= 1000:
+            raise RequestError(f"steps must be from 1 to 1000, got {self.steps}")
         if not 1.0 <= self.spacing <= 5.0:
             raise RequestError(f"spacing must be from 1 to 5, got {self.spacing}")
         if any(a <= b for a, b in pairwise((*self.at, -1))):
@@ -87,10 +84,6 @@ class SamplerConfig:
             train_steps: Of the denoiser.
         """
         return list(self.at) or denoising_steps(self.steps, self.spacing, train_steps)
-
-    def completed(self, steps: int = STEPS) -> SamplerConfig:
-        """Return the sampler with this number of steps, if it sets none."""
-        return replace(self, steps=self.steps or steps)
 
     def guidance_at(self, noise: float) -> float:
         """Return the guidance scale at a noise level, 0 (clean) to 1."""

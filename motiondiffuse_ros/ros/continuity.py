@@ -66,8 +66,7 @@ class Continuity:
             return None
         if latest.states.trajectory.joint_names != robot.joint_names:
             return None
-        work = _work(self._planner.completed(request, continues=True))
-        expected = RESERVE * self._pace * work + SWITCH
+        expected = RESERVE * self._pace * _work(request) + SWITCH
         time = self._clock.now() + Duration(nanoseconds=round(expected * 1e9))
         if at is not None:
             time = _later(time, at)
@@ -109,7 +108,7 @@ def _later(one: Time, other: Time) -> Time:
 
 
 def _work(request: MotionRequest) -> float:
-    """Return the size of a completed request, in units of which only the ratio counts."""
+    """Return the size of a request, in units of which only the ratio counts."""
     assert request.steps is not None
     assert request.candidates is not None
     return (request.steps + 10.0) * request.candidates * (request.total_seconds + 2.0)

@@ -224,11 +224,9 @@ class MotionDiffuseNode(LifecycleNode):
         """Plan and publish, piece by piece if so set; runs in the planning thread."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
         pieces = split(request, self.settings["horizon"], self.settings["first_candidates"])
-        # the robot waits for pieces; what they are together is tracked below
-        track = self.settings["track"] and len(pieces) == 1
         made = plan_in_pieces(
             pieces,
-            partial(self._plan_piece, track=track),
+            partial(self._plan_piece, alone=len(pieces) == 1),
             progress=progress,
             cancelled=cancelled,
             drop=self._configured.publisher.reference.forget_what_follows,
@@ -248,19 +246,22 @@ class MotionDiffuseNode(LifecycleNode):
         request: MotionRequest,
         follows: Time | None,
         *,
-        track: bool,
+        alone: bool,
         progress: Callable[[Progress], None],
         cancelled: Callable[[], bool],
     ) -> Published:
-        """Plan and publish one piece, or all of a request."""
+        """Plan and publish one of several pieces, or all of a request."""
         assert self._configured is not None, "deactivate ends this thread before cleanup"
         planner, continuity = self._configured.planner, self._configured.continuity
         continues = follows is not None or self.settings["continuity"]
         seam = continuity.seam(request, follows) if continues else None
+        if not alone and seam is None and self.settings["few_steps"]:  # the robot stands and waits
+            request = planner.hurried(request)
         plan = planner.plan(
             request,
             start=None if seam is None else seam.start,
-            track=track,
+            # the robot waits for pieces, too: what they are together is tracked
+            track=self.settings["track"] and alone,
             progress=progress,
             cancelled=cancelled,
         )

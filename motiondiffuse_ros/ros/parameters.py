@@ -111,9 +111,7 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
     "record_dir": ParameterSpec("", "folder in which each plan is recorded as MCAP; empty = none"),
     "plan_dir": ParameterSpec("", "folder for the files of the latest plan; empty = none"),
     "steps": ParameterSpec(
-        _DEFAULT.steps,
-        "denoising steps of requests that set none; 0 = as few as each needs",
-        (0, LIMITS.max_steps),
+        _DEFAULT.steps, "denoising steps of requests that set none", (1, LIMITS.max_steps)
     ),
     "guidance_scale": ParameterSpec(
         _DEFAULT.guidance_scale,
@@ -129,6 +127,11 @@ PLANNER_PARAMETERS: dict[str, ParameterSpec] = {
         1,
         "most motions sampled for the first of several pieces (horizon), which a robot waits for",
         (1, LIMITS.max_candidates),
+    ),
+    "few_steps": ParameterSpec(
+        True,
+        "the first of several pieces (horizon) takes as few steps as the weights were taught to "
+        "need, if it asks for whole-body texts alone",
     ),
     "survivors": ParameterSpec(
         _DEFAULT.survivors,
@@ -174,7 +177,7 @@ def complete(request: MotionRequest, parameters: Parameters) -> MotionRequest:
     """Return the request with what it leaves open filled in from the parameters."""
     seed = parameters["seed"]
     return request.with_defaults(
-        steps=parameters["steps"] or None,
+        steps=parameters["steps"],
         guidance_scale=parameters["guidance_scale"],
         candidates=parameters["candidates"],
         seed=None if seed < 0 else seed,

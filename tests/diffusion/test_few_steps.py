@@ -11,7 +11,7 @@ import torch
 from motiondiffuse_ros.diffusion.checkpoint import FEW_STEPS_FILE, Checkpoint
 from motiondiffuse_ros.diffusion.few_steps import FewSteps, FewStepsOf
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
-from motiondiffuse_ros.diffusion.sampler_config import STEPS, SamplerConfig
+from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
 from motiondiffuse_ros.errors import CheckpointError
 from motiondiffuse_ros.manifest import CONFIG_FILE
 from motiondiffuse_ros.text import load_text_encoder
@@ -40,11 +40,13 @@ def pipeline(folder):
     return MotionPipeline.from_pretrained(folder)
 
 
-def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
+def test_they_are_used_where_as_many_are_asked_for(folder, pipeline):
     few = Checkpoint.from_pretrained(folder).few_steps
     assert few.stand_for == OF
-    for same in (PLAIN, replace(PLAIN, steps=3), replace(PLAIN, planted_below=0.0)):
-        assert pipeline.completed(same).steps == 3
+    for same in (PLAIN, replace(PLAIN, planted_below=0.0)):
+        assert pipeline.few_steps(same) == OF.steps == 3
+        assert pipeline.few_steps_sha256(same) == ""
+        same = replace(same, steps=3)
         assert pipeline.few_steps_sha256(same) == few.sha256 != pipeline.weights_sha256
     for other in (
         replace(PLAIN, guidance_scale=2.0),
@@ -52,18 +54,20 @@ def test_they_are_used_where_nothing_else_is_asked_for(folder, pipeline):
         replace(PLAIN, spacing=1.0),
         replace(PLAIN, guidance_interval=(0.5, 1.0)),
     ):
-        assert pipeline.completed(other).steps == STEPS
-        assert pipeline.few_steps_sha256(other) == ""
-    assert pipeline.few_steps_sha256(replace(PLAIN, steps=4)) == ""
+        assert pipeline.few_steps(other) is None
+        assert pipeline.few_steps_sha256(replace(other, steps=3)) == ""
 
 
-def test_what_they_do_first_shows(pipeline):
-    def rotations(config):
+def test_what_they_do_first_shows(pipeline, checkpoint):
+    def rotations(pipeline, steps=3):
+        config = replace(PLAIN, steps=steps)
         return pipeline.batch(["a person walks"], [30], config=config, seed=0)[0].rotations
 
-    few = rotations(PLAIN)
-    assert np.array_equal(few, rotations(replace(PLAIN, steps=3)))
-    assert not np.allclose(few, rotations(replace(PLAIN, steps=4)), atol=1e-3)
+    encoder = load_text_encoder("minilm")
+    base = MotionPipeline(replace(checkpoint, text_encoder_sha256=encoder.sha256), encoder)
+    assert not np.allclose(rotations(pipeline), rotations(base), atol=1e-3)
+    # what is stored in half precision
+    np.testing.assert_allclose(rotations(pipeline, 4), rotations(base, 4), atol=0.05)
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ def test_deactivation_ends_the_goal_in_work_and_the_cycle_can_start_again(graph)
 
 def test_wrong_parameters_are_refused_with_what_would_be_right(graph):
     with unconfigured(graph) as operator:
-        assert "range" in operator.set("steps", -1)
+        assert "range" in operator.set("steps", 0)
         assert "range" in operator.set("candidates", 10**6)
         assert "range" in operator.set("control_rate", -1.0)
         assert "ddim, ddpm" in operator.set("scheduler", "euler")
