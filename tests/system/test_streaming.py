@@ -86,6 +86,23 @@ def test_pieces_follow_one_another_without_a_jump(client, graph):
     assert difference(record, replay(record, planner_of(record)).trajectory) == ""
 
 
+@pytest.mark.parametrize(("few_steps", "steps"), [(True, [5, 8]), (False, [8, 8])])
+def test_the_first_piece_takes_few_steps_unless_told_otherwise(graph, few_steps, steps):
+    settings = {**FAST, "steps": 8, "horizon": 3.0, "few_steps": few_steps}
+    log = graph / "node.log"
+    with (
+        running("motiondiffuse_ros.ros.node", ros_arguments(**settings), log) as process,
+        MotionClient(lambda: process.poll() is None) as client,
+    ):
+        client.wait_for_node(START)
+        plans: list[MotionPlan] = []
+        client.node.create_subscription(MotionPlan, "/motiondiffuse/plan", plans.append, LATCHED)
+        result = client.generate(goal("a person walks forward", 6.0), ignore, ANSWER)
+        assert result.error_code == ErrorCode.SUCCESS
+        client.wait(lambda: len(plans) == 2, ANSWER, "two plans")
+        assert [plan.request.steps for plan in plans] == steps
+
+
 def test_a_new_text_takes_over_from_the_piece_that_runs(client):
     plans: list[MotionPlan] = []
     client.node.create_subscription(MotionPlan, "/motiondiffuse/plan", plans.append, LATCHED)
