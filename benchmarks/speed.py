@@ -34,7 +34,9 @@ LENGTHS = (2.0, 6.0, 30.0, 120.0, 300.0, 600.0)
 BATCHES = (1, 2, 4, 8, 16, 32, 64)
 STREAMED: tuple[dict[str, object], ...] = (
     {"horizon": 2.0},
+    {"horizon": 2.0, "few_steps": False},
     {"horizon": 2.0, "first_candidates": 4},
+    {"steps": 5},
 )
 """Parameters of the node with which first set-points are measured, too."""
 TOKENS = (64, 128, 256, 512, 1024, 2048, 4096)

@@ -20,7 +20,7 @@ def summary_rows(record: dict[str, Any]) -> list[tuple[str, str, str]]:
             (
                 f"the same with {', '.join(f'{k}:={v}' for k, v in row['parameters'].items())}",
                 f"{row['first_setpoint_s']:.2f}",
-                "0.2",
+                "0.2" if "horizon" in row["parameters"] else "",
             )
             for row in record["streamed"]
         ),
