@@ -96,11 +96,11 @@ def measure(options: Options) -> dict[str, Any]:
             figures.append(_figures(items, answers, evaluator, corpus) | {"seconds": took})
         name = "few steps" if pipeline.few_steps_sha256(config) else scheduler
         rows.append(_row(name, steps, figures))
-    settings, default = asdict(options), SamplerConfig()
+    settings = asdict(options)
     return {
         "settings": {k: settings[k] for k in ("split", "clips", "repeats", "seed")},
         "weights_sha256": pipeline.weights_sha256,
-        "default": {"scheduler": default.scheduler, "steps": default.steps},
+        "default": {"scheduler": SamplerConfig.scheduler, "steps": SamplerConfig.steps},
         "rows": rows,
     }
 

@@ -46,10 +46,6 @@ def sample_prompts(
     for text, seed in track([(t, s) for t in plans for s in range(seeds)], "sampling"):
         plans[text].append(planner.plan(MotionRequest.from_text(text, SECONDS, seed=seed)))
     del settings["weights"]
-    plan = next(iter(plans.values()))[0]
-    used = {
-        "weights_sha256": plan.weights_sha256,
-        "few_steps_sha256": plan.few_steps_sha256,
-        "steps": plan.request.steps,
-    }
-    return plans, {"seeds": seeds, **settings, **used}
+    few_steps = next(iter(plans.values()))[0].few_steps_sha256
+    hashes = {"weights_sha256": planner.weights_sha256, "few_steps_sha256": few_steps}
+    return plans, {**hashes, "seeds": seeds, **settings}

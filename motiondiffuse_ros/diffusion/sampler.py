@@ -250,9 +250,11 @@ def _predictor(
 
     if early is None:
         return GuidedDenoiser(denoiser, conditioning, unconditional, times, scale, bf16=bf16)
-    own = [step for step in times if step < early.down_to]
-    late = GuidedDenoiser(denoiser, conditioning, unconditional, own, scale, bf16=bf16)
-    first = GuidedDenoiser(*early[:3], times, lambda step: 1.0, bf16=bf16)
+    # each its own: what stays the same over steps is made for all of them at once
+    before = [step for step in times if step >= early.down_to]
+    after = times[len(before) :]
+    late = GuidedDenoiser(denoiser, conditioning, unconditional, after, scale, bf16=bf16)
+    first = GuidedDenoiser(*early[:3], before, lambda step: 1.0, bf16=bf16)
 
     def predict(noisy: Tensor, step: int, lengths: Tensor, rows: Tensor) -> Tensor:
         return (first if step >= early.down_to else late)(noisy, step, lengths, rows)

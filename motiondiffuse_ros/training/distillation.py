@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import torch
-from diffusers.training_utils import EMAModel
 from torch import Tensor
 
 from motiondiffuse_ros.corpus.store import Corpus
@@ -29,7 +27,12 @@ from motiondiffuse_ros.text import TextEncoder
 from motiondiffuse_ros.training.checks import check_representation
 from motiondiffuse_ros.training.distill_config import DistillConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
-from motiondiffuse_ros.training.optimisation import learning_rate, parameter_groups
+from motiondiffuse_ros.training.optimisation import (
+    averaged,
+    learning_rate,
+    make_average,
+    make_optimizer,
+)
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of
 from motiondiffuse_ros.training.windows import WindowBatch, WindowSampler
 
@@ -164,7 +167,7 @@ class Distiller:
         config.validate()
         check_representation(corpus, teacher.denoiser.config)
         self._sampler = SamplerConfig(steps=config.teacher_steps)
-        self._corpus, self._config, self._out, self._clock = corpus, config, out, clock
+        self._config, self._out, self._clock = config, out, clock
         self._teacher, self._stopping = teacher, False
         start = teacher if student is None else student
         shape = teacher.denoiser.config
@@ -176,15 +179,10 @@ class Distiller:
             )
         self._levels = Levels(make_scheduler("ddpm", shape).alphas_cumprod)
         self.student = deepcopy(start.denoiser).train()
-        self._optimizer = torch.optim.AdamW(
-            parameter_groups(self.student, config.weight_decay),
-            lr=config.learning_rate,
-            betas=(0.9, 0.99),
-            fused=True,
+        self._optimizer = make_optimizer(
+            self.student, learning_rate=config.learning_rate, weight_decay=config.weight_decay
         )
-        self._ema = EMAModel(
-            self.student.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
-        )
+        self._ema = make_average(self.student, config.ema_decay)
         self._bf16 = use_bf16(config.precision)
         self._loss = MotionLoss(corpus.representation, corpus.statistics, corpus.fps)
         self._step, self._seconds = 0, 0.0
@@ -252,7 +250,7 @@ class Distiller:
     def save(self) -> None:
         """Write the averaged weights beside the teacher's, and how they came about."""
         folder = self._out / CHECKPOINT_FOLDER
-        with self._averaged():
+        with averaged(self.student, self._ema):
             few = FewSteps(
                 self.student,
                 FewStepsOf(tuple(jump.start for jump in self._jumps), self._config.then),
@@ -296,14 +294,7 @@ class Distiller:
             clean = self._clean(output, x, jump.start)
             losses = self._loss(clean, aim, lengths, self._step, torch.ones(len(x)))
             by_jump.append(losses)
-            total = (
-                total
-                + losses.features
-                + config.difference_weight * losses.difference
-                + config.position_weight * losses.position
-                + config.velocity_weight * losses.velocity
-                + config.slide_weight * losses.slide
-            )
+            total = total + losses.weighed(config)
             x = self._levels.moved(x, clean.detach(), jump.start, jump.end)
         return total, by_jump
 
@@ -347,7 +338,7 @@ class Distiller:
         """Return the averaged student's squared error on held-out texts, over its steps."""
         generator = torch.Generator().manual_seed(_VALIDATION_SEED)
         by_jump = []
-        with self._averaged():
+        with averaged(self.student, self._ema):
             for batch in self._validation:
                 noise = centred_noise(batch.features.shape, generator)
                 _, losses = self._taught(batch, noise)
@@ -356,17 +347,6 @@ class Distiller:
         self._apart = {"validation": means.mean().item(), "validation_by_step": means.tolist()}
         self._append_log(self._apart)
         return self._apart["validation"]
-
-    @contextmanager
-    def _averaged(self) -> Iterator[None]:
-        """Let the student have its averaged weights for a while."""
-        parameters = list(self.student.parameters())
-        self._ema.store(parameters)
-        self._ema.copy_to(parameters)
-        self.student.eval()
-        yield
-        self.student.train()
-        self._ema.restore(parameters)
 
     def _append_log(self, values: dict[str, Any]) -> None:
         with (self._out / "log.jsonl").open("a", encoding="utf-8") as file:

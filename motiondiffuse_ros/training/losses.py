@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import torch
 from torch import Tensor
@@ -26,6 +27,19 @@ _SHARES = {
 _PAIR_STEP = 8  # forward kinematics is costly: a pair of neighbours in every eight frames has it
 
 
+class LossWeights(Protocol):
+    """Settings that weigh the terms against that of the features."""
+
+    @property
+    def difference_weight(self) -> float: ...
+    @property
+    def position_weight(self) -> float: ...
+    @property
+    def velocity_weight(self) -> float: ...
+    @property
+    def slide_weight(self) -> float: ...
+
+
 @dataclass(frozen=True)
 class Losses:
     """Loss terms of one batch, each a scalar.
@@ -47,6 +61,16 @@ class Losses:
     velocity: Tensor
     slide: Tensor
     plain: Tensor
+
+    def weighed(self, weights: LossWeights) -> Tensor:
+        """Return the sum that is minimised."""
+        return (
+            self.features
+            + weights.difference_weight * self.difference
+            + weights.position_weight * self.position
+            + weights.velocity_weight * self.velocity
+            + weights.slide_weight * self.slide
+        )
 
 
 class MotionLoss:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import torch
 from diffusers.schedulers.scheduling_ddpm import DDPMScheduler
-from diffusers.training_utils import EMAModel
 from torch import Tensor, nn
 from torch.utils.tensorboard import SummaryWriter
 
@@ -28,7 +27,12 @@ from motiondiffuse_ros.training.checks import check_representation
 from motiondiffuse_ros.training.config import TrainConfig
 from motiondiffuse_ros.training.losses import Losses, MotionLoss
 from motiondiffuse_ros.training.noise_levels import draw_steps, noise_weight
-from motiondiffuse_ros.training.optimisation import learning_rate, parameter_groups
+from motiondiffuse_ros.training.optimisation import (
+    averaged,
+    learning_rate,
+    make_average,
+    make_optimizer,
+)
 from motiondiffuse_ros.training.ranks import ALONE, Ranks
 from motiondiffuse_ros.training.text_to_prediction import TextToPrediction
 from motiondiffuse_ros.training.texts import CaptionStates, all_captions, other_words_of
@@ -95,15 +99,10 @@ class Trainer:
         self._started_from = None if start is None else start.sha256
         if start is not None:
             self._start_from(start)
-        self._optimizer = torch.optim.AdamW(
-            parameter_groups(self.denoiser, config.weight_decay),
-            lr=config.learning_rate,
-            betas=(0.9, 0.99),
-            fused=True,
+        self._optimizer = make_optimizer(
+            self.denoiser, learning_rate=config.learning_rate, weight_decay=config.weight_decay
         )
-        self._ema = EMAModel(
-            self.denoiser.parameters(), decay=config.ema_decay, use_ema_warmup=True, power=0.75
-        )
+        self._ema = make_average(self.denoiser, config.ema_decay)
         scheduler = make_scheduler("ddpm", denoiser_config)
         assert isinstance(scheduler, DDPMScheduler)
         self._scheduler = scheduler
@@ -206,25 +205,17 @@ class Trainer:
     @torch.no_grad()
     def validate(self) -> float:
         """Return the averaged weights' unweighted loss on fixed held-out windows and noise."""
-        parameters = list(self.denoiser.parameters())
-        self._ema.store(parameters)
-        self._ema.copy_to(parameters)
-        self.denoiser.eval()
         generator = torch.Generator().manual_seed(_VALIDATION_SEED)
-        losses = [self._forward(self._model, b, generator, 0.0)[0] for b in self._validation]
-        self.denoiser.train()
-        self._ema.restore(parameters)
+        with averaged(self.denoiser, self._ema):
+            losses = [self._forward(self._model, b, generator, 0.0)[0] for b in self._validation]
         return sum(loss.plain.item() for loss in losses) / len(losses)
 
     def save(self) -> None:
         """Write the averaged weights and the state to resume from."""
-        parameters = list(self.denoiser.parameters())
-        self._ema.store(parameters)
-        self._ema.copy_to(parameters)
-        Checkpoint(self.denoiser, self._corpus.statistics, self._encoder.sha256).save_pretrained(
-            self._out / CHECKPOINT_FOLDER
-        )
-        self._ema.restore(parameters)
+        with averaged(self.denoiser, self._ema):
+            Checkpoint(
+                self.denoiser, self._corpus.statistics, self._encoder.sha256
+            ).save_pretrained(self._out / CHECKPOINT_FOLDER)
         if self._critic is not None:
             self._critic.save_pretrained(self._out / CHECKPOINT_FOLDER / CRITIC_FOLDER)
         state = {
@@ -245,14 +236,7 @@ class Trainer:
             group["lr"] = self._learning_rate()
         dropout = self._config.condition_dropout
         losses, alignment = self._forward(self._together, batch, None, dropout)
-        total = (
-            losses.features
-            + self._config.difference_weight * losses.difference
-            + self._config.position_weight * losses.position
-            + self._config.velocity_weight * losses.velocity
-            + self._config.slide_weight * losses.slide
-            + self._config.alignment_weight * alignment
-        )
+        total = losses.weighed(self._config) + self._config.alignment_weight * alignment
         self._optimizer.zero_grad(set_to_none=True)
         total.backward()
         torch.nn.utils.clip_grad_norm_(self.denoiser.parameters(), self._config.gradient_clip)
