@@ -6,6 +6,7 @@ Weights that were taught to need few steps lie beside them, as few_steps.safeten
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,7 @@ class Checkpoint:
                     f"checkpoint {folder}: few steps without a {FEW_STEPS_FILE} of known hash"
                 )
             few = FewSteps(
-                load(FEW_STEPS_FILE),
+                partial(load, FEW_STEPS_FILE),  # most who start never ask for it
                 FewStepsOf.from_dict(config["few_steps"]),
                 config["files"][FEW_STEPS_FILE],
             )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property
 from typing import Any
 
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
@@ -81,11 +83,16 @@ class FewSteps:
     """A student and what it was taught (`training.distillation`).
 
     Attributes:
-        denoiser: In evaluation mode, float32; of the teacher's shape.
+        load: Makes the denoiser; called once, when it is first asked for.
         stand_for: What its steps do.
         sha256: Hash of the weights file; empty before saving.
     """
 
-    denoiser: Denoiser = field(repr=False)
+    load: Callable[[], Denoiser] = field(repr=False)
     stand_for: FewStepsOf
     sha256: str = ""
+
+    @cached_property
+    def denoiser(self) -> Denoiser:
+        """In evaluation mode, float32; of the teacher's shape."""
+        return self.load()

@@ -96,11 +96,8 @@ class MotionPipeline:
             TextEncoderError: If the encoder cannot be used.
         """
         checkpoint = Checkpoint.from_pretrained(folder)
-        few = checkpoint.few_steps
         try:
             checkpoint.denoiser.to(device)
-            if few is not None:
-                few.denoiser.to(device)
         except (RuntimeError, AssertionError) as error:
             raise CheckpointError(f"device '{device}' cannot be used: {error}") from error
         name = checkpoint.denoiser.config.text_encoder
@@ -303,7 +300,8 @@ class MotionPipeline:
         own = conditioned(self._checkpoint.denoiser)
         if few is None:
             return *own, config, None
-        early = Early(few.denoiser, *conditioned(few.denoiser), few.stand_for.taught[-1])
+        student = few.denoiser.to(own[0].pooled.device)
+        early = Early(student, *conditioned(student), few.stand_for.taught[-1])
         return *own, few.stand_for.sampler(config), early
 
     def _decode(self, features: torch.Tensor) -> Motion:

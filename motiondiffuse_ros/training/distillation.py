@@ -252,7 +252,7 @@ class Distiller:
         folder = self._out / CHECKPOINT_FOLDER
         with averaged(self.student, self._ema):
             few = FewSteps(
-                self.student,
+                lambda: self.student,
                 FewStepsOf(tuple(jump.start for jump in self._jumps), self._config.then),
             )
             replace(self._teacher, few_steps=few).save_pretrained(folder)
