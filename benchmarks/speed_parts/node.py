@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,8 @@ from motiondiffuse_ros.ros.qos import COMMANDS, LATCHED, STREAM
 
 PATIENCE = 120.0
 """For an answer [s]."""
+TEXTS = (TEXT, "a person bows")
+"""What the node is asked for in turn: the encoder remembers the sentence before."""
 QUIET = 1.0
 """A stream of set-points that paused for longer has ended [s]."""
 
@@ -61,7 +64,7 @@ def measure_node(seconds: float, repeats: int, parameters: dict[str, object]) ->
             goal = listener.send(request_of(seconds), lambda feedback: None, PATIENCE)
             startup = time.perf_counter() - began
             listener.result(goal, PATIENCE)
-            answers = [listener.ask() for _ in range(repeats + 1)][1:]
+            answers = [listener.ask(text) for text in islice(cycle(TEXTS), repeats + 1)][1:]
             memory = memory_mb(process.pid)
     plans, setpoints = zip(*answers, strict=True)
     return {
@@ -126,12 +129,12 @@ class _Listener(MotionClient):
             JointState, "motiondiffuse/reference", self._on_setpoint, STREAM
         )
 
-    def ask(self) -> tuple[float, float]:
+    def ask(self, text: str) -> tuple[float, float]:
         """Return the times from a sentence to its plan and to its first set-point [s]."""
         self.wait(lambda: time.perf_counter() - self._last > QUIET, PATIENCE, "rest")
         self._plan = self._first = 0.0
         began = time.perf_counter()
-        self._text.publish(String(data=TEXT))
+        self._text.publish(String(data=text))
         self.wait(lambda: bool(self._plan and self._first), PATIENCE, "a plan and its set-points")
         return self._plan - began, self._first - began
 

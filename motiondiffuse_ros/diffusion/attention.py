@@ -31,16 +31,20 @@ class AttentionContext:
         )
 
     def beside(self, other: AttentionContext) -> AttentionContext:
-        """Return these rows of the batch, then those of another as long."""
-        return AttentionContext(
-            _joined(self.keys, other.keys),
-            torch.cat([self.values, other.values]),
-            _joined(self.mask, other.mask),
-        )
+        """Return these rows of the batch, then those of another; a shorter one is padded."""
+        keys = mask = None
+        if self.keys is not None and other.keys is not None:
+            keys = _joined(self.keys, other.keys, axis=2)
+        if self.mask is not None and other.mask is not None:
+            mask = _joined(self.mask, other.mask, axis=1)
+        return AttentionContext(keys, _joined(self.values, other.values, axis=2), mask)
 
 
-def _joined(one: Tensor | None, other: Tensor | None) -> Tensor | None:
-    return None if one is None or other is None else torch.cat([one, other])
+def _joined(one: Tensor, other: Tensor, axis: int) -> Tensor:
+    """Return both batches in one, with zeros after the end of the shorter one along an axis."""
+    length = max(one.shape[axis], other.shape[axis])
+    after = (0, 0) * (one.ndim - 1 - axis)
+    return torch.cat([F.pad(x, (*after, 0, length - x.shape[axis])) for x in (one, other)])
 
 
 class Attention(nn.Module):

@@ -30,7 +30,8 @@ from motiondiffuse_ros.motion.features import REPRESENTATIONS, PoseState, Repres
 from motiondiffuse_ros.motion.planted_feet import WHILE_DENOISING, PlantedFeet
 from motiondiffuse_ros.motion.root_path import PathPoint, RootPath
 from motiondiffuse_ros.motion.rotations import Array
-from motiondiffuse_ros.text import TextEncoder, load_text_encoder
+from motiondiffuse_ros.text import TextEncoder, TokenStates, load_text_encoder
+from motiondiffuse_ros.text.remembered import Remembered
 
 EASE = 0.6
 """Time in which the difference between kept and predicted frames dies away next to them [s]."""
@@ -77,8 +78,9 @@ class MotionPipeline:
                 f"unknown representation '{config.representation}'; known: "
                 f"{', '.join(REPRESENTATIONS)}"
             )
-        self._checkpoint, self._encoder = checkpoint, encoder
+        self._checkpoint, self._encoder = checkpoint, Remembered(encoder)
         self._representation: Representation = REPRESENTATIONS[config.representation]()
+        self._unconditional: dict[Denoiser, Conditioning] = {}
 
     @classmethod
     def from_pretrained(
@@ -214,7 +216,7 @@ class MotionPipeline:
         )
         began = time.perf_counter()
         distinct = list(dict.fromkeys(w.text for w in windows))
-        given = self._given([*distinct, ""], config)
+        given = self._given(distinct, config)
         encoded = time.perf_counter()
         sampled = sample(
             denoiser,
@@ -263,7 +265,7 @@ class MotionPipeline:
             features = sample_batch(
                 self._checkpoint.denoiser,
                 torch.tensor([frames[i] for i in rows]),
-                *self._given([*(texts[i] for i in rows), ""], config),
+                *self._given([texts[i] for i in rows], config),
                 seed=seed + start,  # batches must not share their noise
                 planted=self._planted(),
             )
@@ -286,15 +288,13 @@ class MotionPipeline:
     def _given(
         self, texts: Sequence[str], config: SamplerConfig
     ) -> tuple[Conditioning, Conditioning, SamplerConfig, Early | None]:
-        """Return what sampling is given of texts, the last one empty, and the sampler to use."""
+        """Return what sampling is given of texts and of the empty one, and the sampler to use."""
         tokens = self._encoder.encode(texts)
-        count = len(texts) - 1
 
         def conditioned(denoiser: Denoiser) -> tuple[Conditioning, Conditioning]:
-            states, mask = (x.to(denoiser.device) for x in (tokens.states, tokens.mask))
-            with torch.inference_mode():
-                every = denoiser.condition(states, mask)
-            return every.expand(torch.arange(count)), every.expand(torch.tensor([count]))
+            if denoiser not in self._unconditional:  # the same for every request
+                self._unconditional[denoiser] = _condition(denoiser, self._encoder.encode([""]))
+            return _condition(denoiser, tokens), self._unconditional[denoiser]
 
         few = self._few_steps_for(config)
         own = conditioned(self._checkpoint.denoiser)
@@ -307,3 +307,8 @@ class MotionPipeline:
     def _decode(self, features: torch.Tensor) -> Motion:
         clean = self._checkpoint.statistics.denormalise(features.cpu().numpy())
         return self._representation.decode(clean, self.fps)
+
+
+@torch.inference_mode()
+def _condition(denoiser: Denoiser, tokens: TokenStates) -> Conditioning:
+    return denoiser.condition(tokens.states.to(denoiser.device), tokens.mask.to(denoiser.device))

@@ -12,6 +12,7 @@ import torch
 
 from motiondiffuse_ros.corpus.statements import OPPOSED, statements_of
 from motiondiffuse_ros.corpus.statistics import Statistics
+from motiondiffuse_ros.diffusion.threads import in_halves
 from motiondiffuse_ros.errors import CheckpointError, TextEncoderError
 from motiondiffuse_ros.evaluation.config import EvaluatorConfig
 from motiondiffuse_ros.evaluation.network import ActionNetwork, TextMotionNetwork
@@ -35,6 +36,8 @@ _NETWORK, _ACTIONS, _STATISTICS = (
     "statistics.safetensors",
 )
 _BATCH = 64
+
+_Embed = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
 
 
 def shipped_evaluator() -> Path:
@@ -105,11 +108,7 @@ class Evaluator:
         return self.recogniser
 
     @torch.inference_mode()
-    def _over(
-        self,
-        features: Sequence[Array],
-        embed: Callable[[torch.Tensor, torch.Tensor], torch.Tensor],
-    ) -> Array:
+    def _over(self, features: Sequence[Array], embed: _Embed) -> Array:
         # by length, so that batches have little padding; the last frames of a long one are cut
         longest = self.network.config.max_frames
         order = sorted(range(len(features)), key=lambda i: len(features[i]))
@@ -117,11 +116,7 @@ class Evaluator:
         for start in range(0, len(order), _BATCH):
             batch = order[start : start + _BATCH]
             cut = [self.statistics.normalise(features[i][:longest]) for i in batch]
-            lengths = torch.tensor([len(x) for x in cut])
-            x = torch.nn.utils.rnn.pad_sequence(
-                [torch.from_numpy(np.asarray(x, dtype=np.float32)) for x in cut], batch_first=True
-            )
-            for i, row in zip(batch, embed(x, lengths).numpy(), strict=True):
+            for i, row in zip(batch, _embedded(cut, embed).numpy(), strict=True):
                 rows[i] = row
         return np.stack(rows)
 
@@ -180,3 +175,12 @@ class Evaluator:
             encoder,
             manifest["files"][_NETWORK],
         )
+
+
+def _embedded(motions: Sequence[Array], embed: _Embed) -> torch.Tensor:
+    """Return the vectors of one batch of normalised features."""
+    lengths = torch.tensor([len(x) for x in motions])
+    padded = torch.nn.utils.rnn.pad_sequence(
+        [torch.from_numpy(np.asarray(x, dtype=np.float32)) for x in motions], batch_first=True
+    )
+    return in_halves(lambda some: embed(padded[some], lengths[some]), len(motions))

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import pytest
 import torch
+from small_denoiser import SMALL
 
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
@@ -40,6 +41,27 @@ def test_text_padding_changes_nothing(denoiser):
         atol=1e-5,
         rtol=1e-4,
     )
+
+
+@pytest.mark.parametrize("attention", ["efficient", "full"])
+@pytest.mark.parametrize("alone", [5, 7, 9])
+@torch.inference_mode()
+def test_texts_of_other_lengths_stand_beside_each_other(attention, alone):
+    torch.manual_seed(0)
+    denoiser = Denoiser(replace(SMALL, attention=attention)).eval()
+    for layer in denoiser.layers:
+        for style in layer.styles:
+            style.project.weight.normal_(std=0.2)
+    x, steps, states, mask = _inputs(denoiser)
+    other = torch.randn(1, alone, denoiser.config.text_dim)
+    of_other = denoiser.condition(other, torch.ones(1, alone, dtype=torch.bool))
+    both = denoiser.condition(states[:2], mask[:2]).beside(of_other)
+    lengths = torch.full((3,), 30)
+    y = denoiser(x, steps, lengths, both)
+    own = denoiser(x[2:], steps[2:], lengths[2:], of_other)
+    torch.testing.assert_close(y[2:], own, atol=1e-5, rtol=1e-4)
+    first = denoiser(x[:2], steps[:2], lengths[:2], denoiser.condition(states[:2], mask[:2]))
+    torch.testing.assert_close(y[:2], first, atol=1e-5, rtol=1e-4)
 
 
 @torch.inference_mode()
