@@ -31,7 +31,7 @@ from motiondiffuse_ros.ros.qos import COMMANDS, LATCHED, STREAM
 
 PATIENCE = 120.0
 """For an answer [s]."""
-TEXTS = (TEXT, "a person bows")
+TEXTS = (TEXT, TEXT.replace("right", "left"))
 """What the node is asked for in turn: the encoder remembers the sentence before."""
 QUIET = 1.0
 """A stream of set-points that paused for longer has ended [s]."""
