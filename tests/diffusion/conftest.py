@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import torch
-from small_denoiser import SMALL
+from small_denoiser import SMALL, small_denoiser
 
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
@@ -14,14 +13,8 @@ from motiondiffuse_ros.diffusion.denoiser import Denoiser
 
 @pytest.fixture
 def denoiser() -> Denoiser:
-    """Random weights; the zero-initialised projections are filled so that texts matter."""
-    torch.manual_seed(0)
-    model = Denoiser(SMALL).eval()
-    with torch.no_grad():
-        for layer in model.layers:
-            for style in layer.styles:
-                style.project.weight.normal_(std=0.2)
-    return model
+    """Return one whose texts matter."""
+    return small_denoiser()
 
 
 @pytest.fixture

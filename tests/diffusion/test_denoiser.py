@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import pytest
 import torch
-from small_denoiser import SMALL
+from small_denoiser import small_denoiser
 
 from motiondiffuse_ros.diffusion.config import DenoiserConfig
 from motiondiffuse_ros.diffusion.denoiser import Denoiser
@@ -47,11 +47,7 @@ def test_text_padding_changes_nothing(denoiser):
 @pytest.mark.parametrize("alone", [5, 7, 9])
 @torch.inference_mode()
 def test_texts_of_other_lengths_stand_beside_each_other(attention, alone):
-    torch.manual_seed(0)
-    denoiser = Denoiser(replace(SMALL, attention=attention)).eval()
-    for layer in denoiser.layers:
-        for style in layer.styles:
-            style.project.weight.normal_(std=0.2)
+    denoiser = small_denoiser(attention=attention)
     x, steps, states, mask = _inputs(denoiser)
     other = torch.randn(1, alone, denoiser.config.text_dim)
     of_other = denoiser.condition(other, torch.ones(1, alone, dtype=torch.bool))

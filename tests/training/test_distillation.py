@@ -10,12 +10,11 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 from made_corpus import corpus_of
-from small_denoiser import SMALL
+from small_denoiser import SMALL, small_denoiser
 from synthetic import standing, waving
 
 from motiondiffuse_ros.corpus.statistics import Statistics
 from motiondiffuse_ros.diffusion.checkpoint import Checkpoint
-from motiondiffuse_ros.diffusion.denoiser import Denoiser
 from motiondiffuse_ros.diffusion.pipeline import MotionPipeline
 from motiondiffuse_ros.diffusion.process import denoising_steps, make_scheduler
 from motiondiffuse_ros.diffusion.sampler_config import SamplerConfig
@@ -56,12 +55,7 @@ def teacher(encoder):
     # of two clips most features hardly vary: what is normalised by that is no motion any more
     dim = corpus.representation.dim
     corpus = replace(corpus, statistics=Statistics(np.zeros(dim, "f"), np.ones(dim, "f")))
-    torch.manual_seed(0)
-    denoiser = Denoiser(replace(SMALL, prediction_type="sample")).eval()
-    with torch.no_grad():  # so that texts, and with them guidance, matter
-        for layer in denoiser.layers:
-            for style in layer.styles:
-                style.project.weight.normal_(std=0.2)
+    denoiser = small_denoiser(prediction_type="sample")
     return corpus, Checkpoint(denoiser, corpus.statistics, encoder.sha256, "teacher")
 
 
